@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace lamella::io {
+
+/// Writes a whole file under a temporary name in the same folder, syncs it, and renames it into place.
+/// @throws IoError  naming the path and the system's reason; nothing is left behind
+void write_file_atomically(const std::filesystem::path& path, std::string_view contents);
+
+/// The contents of a file of at most `limit` bytes.
+/// @throws IoError  it cannot be read   @throws InputError  it is larger, or a directory
+std::string read_file(const std::filesystem::path& path, std::size_t limit = std::size_t{1} << 30);
+
+/// The shortest text that reads back as the same double; "nan" and "inf" as such.
+std::string shortest_text(double value);
+
+}  // namespace lamella::io

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lamella/sim/node.h"
+#include "lamella/sim/registry.h"
+
+namespace lamella::scene {
+
+/// [time]: how long, and when to look. Times are in the solver's time unit.
+struct TimeOptions {
+    double end = 0.0;               ///< 0: until the solver's own end conditions
+    double frame_rate = 1.0;        ///< frames per unit of time; 0: only the first and the last
+    double series_rate = 0.0;       ///< series rows per unit of time, beside those at frames; 0: none
+    double series_per_decade = 0.0; ///< rows at logarithmic times from `log_start` on, per factor of ten; 0: none
+    double log_start = 0.01;
+
+    template <class Visitor>
+    void visit(Visitor&& option);
+};
+
+/// [output]: what is written.
+struct OutputOptions {
+    double checkpoint_interval = 60.0;  ///< wall-clock seconds between checkpoints; 0: only at the end or on a signal
+    bool frames = true;
+
+    template <class Visitor>
+    void visit(Visitor&& option);
+};
+
+/// A checked scene file: the problem, and the options of the solver that it names.
+struct Scene {
+    std::string file;       ///< as the user named it, for messages
+    std::string title;
+    std::string solver;
+    std::uint64_t seed = 1;
+    TimeOptions time;
+    OutputOptions output;
+    sim::Node root;         ///< everything that was written, overrides applied
+    std::vector<std::string> notes;  ///< e.g. "[melp] is not used by solver bubble"
+};
+
+/// Reads and checks a scene file, applies `overrides` ("bubble.gas_fraction=0.9", each a TOML value; text that is no
+/// TOML value counts as a string), and checks the options of its solver.
+/// @throws InputError  with file:line, the key, what was found and what is allowed   @throws IoError
+Scene load_scene(const std::filesystem::path& path,
+                 const std::vector<std::string>& overrides,
+                 const sim::SolverRegistry& registry);
+
+/// The same from text (tests, fuzzing, importers); `name` stands for the file in messages.
+Scene parse_scene(std::string_view text,
+                  const std::string& name,
+                  const std::vector<std::string>& overrides,
+                  const sim::SolverRegistry& registry);
+
+/// The scene with every default filled in, as TOML: running it again gives the same bits.
+std::string resolved_toml(const Scene& scene, const sim::SolverRegistry& registry);
+
+/// The solver of a scene, its options checked, not started.
+std::unique_ptr<sim::Solver> create_solver(const Scene& scene, const sim::SolverRegistry& registry);
+
+/// Every solver of this build (solvers.cpp: one plain call each).
+sim::SolverRegistry all_solvers();
+
+}  // namespace lamella::scene

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lamella::sim {
+
+/// Where a solver saves its complete state. Names are unique within one state; groups are written "foam/position".
+class StateWriter {
+public:
+    virtual ~StateWriter() = default;
+    virtual void write(std::string_view name, std::span<const double> values) = 0;
+    virtual void write(std::string_view name, std::span<const std::int64_t> values) = 0;
+    virtual void write(std::string_view name, std::span<const std::int32_t> values) = 0;
+
+    void write_value(std::string_view name, double value) { write(name, std::span<const double>(&value, 1)); }
+    void write_value(std::string_view name, std::int64_t value) {
+        write(name, std::span<const std::int64_t>(&value, 1));
+    }
+};
+
+/// Where a solver finds it again. Every read says how many values it expects, so that a damaged or hostile file is
+/// refused before memory is taken.
+class StateReader {
+public:
+    virtual ~StateReader() = default;
+    /// @throws InputError  the entry is missing, has another type, or another number of values
+    virtual void read(std::string_view name, std::size_t count, std::vector<double>& values) = 0;
+    virtual void read(std::string_view name, std::size_t count, std::vector<std::int64_t>& values) = 0;
+    virtual void read(std::string_view name, std::size_t count, std::vector<std::int32_t>& values) = 0;
+
+    double read_double(std::string_view name) {
+        std::vector<double> value;
+        read(name, 1, value);
+        return value[0];
+    }
+    std::int64_t read_integer(std::string_view name) {
+        std::vector<std::int64_t> value;
+        read(name, 1, value);
+        return value[0];
+    }
+};
+
+}  // namespace lamella::sim

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lamella/sim/node.h"
+#include "lamella/sim/options.h"
+#include "lamella/sim/solver.h"
+
+namespace lamella::sim {
+
+/// One option of a solver, as `lamella explain` and the docs show it.
+struct OptionInfo {
+    std::string name;      ///< "flow.velocity"
+    std::string type;      ///< "number", "integer", "boolean", "word", "text", "3 numbers", "3 booleans"
+    std::string default_text;
+    std::string allowed;   ///< "[0, 1]", "background | pairwise", ""
+    Doc doc;
+};
+
+/// What a solver is made from: the part of a scene that concerns it.
+struct SolverInput {
+    std::string directory;    ///< of the scene file: relative file names in options count from here
+    std::uint64_t seed = 1;
+    double end_time = 0.0;    ///< in the solver's time unit
+    Node options;             ///< the solver's own table; an empty table where the scene has none
+};
+
+struct SolverEntry {
+    std::string name;
+    std::string summary;
+    std::string time_unit = "s";
+    std::function<std::unique_ptr<Solver>(const SolverInput&)> create;  ///< checks the options, does no work
+    std::function<std::vector<OptionInfo>()> describe;
+    std::function<Node(const Node& options)> resolve;  ///< the options with every default filled in
+};
+
+/// The solvers of this build. A value, filled by plain calls (scene/solvers.cpp).
+class SolverRegistry {
+public:
+    void add(SolverEntry entry);
+    /// nullptr when there is none of that name.
+    const SolverEntry* find(std::string_view name) const;
+    const std::vector<SolverEntry>& entries() const { return entries_; }
+
+private:
+    std::vector<SolverEntry> entries_;
+};
+
+}  // namespace lamella::sim
