@@ -4,23 +4,35 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lamella/sim/node.h"
+#include "lamella/sim/options.h"
 #include "lamella/sim/registry.h"
 
 namespace lamella::scene {
 
-/// [time]: how long, and when to look. Times are in the solver's time unit.
+/// [time]: how long, and when to look. Times are in the solver's time unit; where that is "s", a string with a unit
+/// will do ("20 ms").
 struct TimeOptions {
-    double end = 0.0;               ///< 0: until the solver's own end conditions
-    double frame_rate = 1.0;        ///< frames per unit of time; 0: only the first and the last
-    double series_rate = 0.0;       ///< series rows per unit of time, beside those at frames; 0: none
-    double series_per_decade = 0.0; ///< rows at logarithmic times from `log_start` on, per factor of ten; 0: none
+    double end = 0.0;                ///< 0: until the solver's own end conditions
+    double frame_rate = 1.0;         ///< frames per unit of time; 0: only the first and the last
+    double series_rate = 0.0;        ///< series rows per unit of time, beside those at frames; 0: none
+    double series_per_decade = 0.0;  ///< rows at logarithmic times from `log_start` on, per factor of ten; 0: none
     double log_start = 0.01;
 
     template <class Visitor>
-    void visit(Visitor&& option);
+    void visit(Visitor&& option) {
+        option("end", end, sim::at_least(0.0), {"when the run ends; 0: when the solver's own end conditions say", "time"});
+        option("frame_rate", frame_rate, sim::at_least(0.0),
+               {"frames per unit of time; 0: only the first and the last", "1/time"});
+        option("series_rate", series_rate, sim::at_least(0.0),
+               {"rows of the series per unit of time, beside those at frames; 0: none", "1/time"});
+        option("series_per_decade", series_per_decade, sim::between(0.0, 1e6),
+               {"rows at logarithmic times from log_start on, per factor of ten; 0: none"});
+        option("log_start", log_start, sim::more_than(0.0), {"first time of the logarithmic rows", "time"});
+    }
 };
 
 /// [output]: what is written.
@@ -29,7 +41,11 @@ struct OutputOptions {
     bool frames = true;
 
     template <class Visitor>
-    void visit(Visitor&& option);
+    void visit(Visitor&& option) {
+        option("checkpoint_interval", checkpoint_interval, sim::at_least(0.0),
+               {"wall-clock time between checkpoints; 0: only at the end or on a signal", "s"});
+        option("frames", frames, {"write frames; the series is always written"});
+    }
 };
 
 /// A checked scene file: the problem, and the options of the solver that it names.

@@ -35,4 +35,16 @@ std::string type_name(const Node& node);
 /// The value as the user would write it in TOML, shortened to one line: for error messages.
 std::string found_text(const Node& node);
 
+/// `text` as a quoted TOML string on one line; what cannot be printed is escaped.
+std::string quoted_text(std::string_view text);
+
+/// The shortest number that reads back as the same double, always a TOML float: "0.1", "1.0", "1e-05".
+std::string exact_text(double value);
+
+/// `key` as TOML writes it: bare where that is allowed, quoted otherwise.
+std::string key_text(std::string_view key);
+
+/// "bubble" and "flow" -> "bubble.flow"; "" and "bubble" -> "bubble".
+std::string join_path(std::string_view parent, std::string_view key);
+
 }  // namespace lamella::sim
