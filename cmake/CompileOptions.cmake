@@ -3,6 +3,8 @@
 # -ffp-contract=off: the same source line gives the same bits on every instruction set (no silent fused
 # multiply-add), which reproducible runs rest on. -fno-math-errno and -fno-trapping-math let loops with a
 # square root or a select vectorize; neither changes a result.
+#
+# The optimization level is the build type's: Release is -O3 -DNDEBUG.
 
 function(lamella_compile_options target)
   target_compile_options(${target} PRIVATE
@@ -15,5 +17,11 @@ function(lamella_compile_options target)
     target_compile_options(${target} PRIVATE -fsanitize=${LAMELLA_SANITIZE} -fno-omit-frame-pointer
                                              -fno-sanitize-recover=all)
     target_link_options(${target} PRIVATE -fsanitize=${LAMELLA_SANITIZE})
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # instrumented code makes gcc guess wrong inside the standard library
+      target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
+    endif()
+  endif()
+  if(LAMELLA_BUILD_FUZZERS)
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
   endif()
 endfunction()

@@ -1,6 +1,7 @@
-# Everything that is linked, found in one place. Each library is used by one folder only (named beside it).
+# Everything that is linked, found in one place. Each library is used by one folder only (named beside it; the table in
+# tests/house/include_rule.py keeps it so).
 find_package(TBB REQUIRED)             # core: parallel_for
-find_package(fmt REQUIRED)             # core: messages
+find_package(fmt REQUIRED)             # everywhere: messages
 find_package(spdlog REQUIRED)          # run: log.txt
 find_package(ZLIB REQUIRED)            # io: compressed frames
 find_package(HDF5 REQUIRED COMPONENTS C)  # io: checkpoints
@@ -9,3 +10,10 @@ find_package(tomlplusplus REQUIRED)    # scene
 if(LAMELLA_BUILD_APP)
   find_package(CLI11 REQUIRED)         # apps
 endif()
+
+set(LAMELLA_LIBRARY_VERSIONS "oneTBB ${TBB_VERSION}, fmt ${fmt_VERSION}, spdlog ${spdlog_VERSION}, \
+zlib ${ZLIB_VERSION_STRING}, HDF5 ${HDF5_VERSION}, nlohmann-json ${nlohmann_json_VERSION}, \
+toml++ ${tomlplusplus_VERSION}")
+
+# Parts that are built only where their dependency is present, as `lamella version` lists them: "cuda, render".
+set(LAMELLA_OPTIONAL_PARTS "")

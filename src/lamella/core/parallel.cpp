@@ -1,11 +1,53 @@
 #include "lamella/core/parallel.h"
 
-#include <thread>
-
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include <thread>
+
+#ifdef LAMELLA_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#endif
+
 namespace lamella {
+
+namespace {
+
+// What a parallel loop guarantees, told to the thread sanitizer: everything before the loop happens before every
+// block, and every block happens before whatever follows the loop. Nothing is said about two blocks, so that a race
+// between them is found. Empty in other builds.
+#ifdef LAMELLA_THREAD_SANITIZER
+class ForkJoin {
+public:
+    ForkJoin() { __tsan_release(&fork_); }
+    ~ForkJoin() { __tsan_acquire(&join_); }
+    ForkJoin(const ForkJoin&) = delete;
+    ForkJoin& operator=(const ForkJoin&) = delete;
+
+    class Block {
+    public:
+        explicit Block(ForkJoin& loop) : loop_(loop) { __tsan_acquire(&loop_.fork_); }
+        ~Block() { __tsan_release(&loop_.join_); }  // also when the block throws
+        Block(const Block&) = delete;
+        Block& operator=(const Block&) = delete;
+
+    private:
+        ForkJoin& loop_;
+    };
+
+private:
+    char fork_ = 0;
+    char join_ = 0;
+};
+#else
+struct ForkJoin {
+    struct Block {
+        explicit Block(ForkJoin&) {}
+    };
+};
+#endif
+
+}  // namespace
 
 struct ThreadLimit::Impl {
     tbb::global_control control;
@@ -28,7 +70,11 @@ void detail::run_blocks(std::size_t blocks, void (*body)(void*, std::size_t), vo
         if (blocks == 1) body(context, 0);
         return;
     }
-    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) { body(context, b); });
+    ForkJoin loop;
+    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
+        const ForkJoin::Block scope(loop);
+        body(context, b);
+    });
 }
 
 }  // namespace lamella
