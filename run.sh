@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+. "$root/scripts/common.sh"
+
+usage() {
+    cat <<'TEXT'
+usage: ./run.sh [SCENE] [--no-install] [--build-dir DIR] [-h]
+
+Builds lamella for this machine, runs a scene, plots the result and says where everything is.
+
+  SCENE            a scene file, or the name of a shipped scene (default: bubble/coarsening-2d-small)
+  --no-install     do not install missing Debian packages
+  --build-dir DIR  where to build (default: build/release)
+TEXT
+}
+
+scene=
+install=yes
+build=$root/build/release
+while [ $# -gt 0 ]; do
+    case $1 in
+        -h | --help) usage && exit 0 ;;
+        --no-install) install=no ;;
+        --build-dir)
+            [ $# -ge 2 ] || die "--build-dir needs a folder"
+            build=$(absolute "$2")
+            shift
+            ;;
+        --build-dir=*) build=$(absolute "${1#*=}") ;;
+        -*) usage >&2 && die "unknown option $1" ;;
+        *)
+            [ -z "$scene" ] || die "one scene at a time: $scene or $1?"
+            scene=$1
+            ;;
+    esac
+    shift
+done
+scene=${scene:-bubble/coarsening-2d-small}
+
+# The run folder is named after the scene: bubble/coarsening-2d -> bubble-coarsening-2d, some/where/foam.toml -> foam.
+if [ -f "$scene" ]; then
+    name=$(basename "$scene" .toml)
+else
+    name=${scene//\//-}
+fi
+run=$root/runs/$name
+lamella=$build/bin/lamella
+
+[ "$install" = no ] || install_packages build
+say "Building in $build"
+configure release "$build" -DLAMELLA_NATIVE=ON -DLAMELLA_BUILD_APP=ON
+cmake --build "$build" --target bin/lamella --parallel "$jobs" >&2
+
+say "Running $scene"
+"$lamella" run "$scene" --out "$run" --overwrite
+
+say "Plotting"
+"$lamella" plot "$run"
+
+cat <<TEXT
+
+Done.
+  run folder   $run
+  series       $run/series.csv
+  ParaView     $run/frames.pvd
+TEXT
+find "$run" \( -name '*.png' -o -name '*.svg' \) | sort | sed 's/^/  picture      /'
+cat <<TEXT
+  program      $lamella   (try: scenes, explain bubble, measure $run)
+TEXT
