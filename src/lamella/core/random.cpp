@@ -1,11 +1,11 @@
 #include "lamella/core/random.h"
 
+#include "lamella/core/error.h"
+
 #include <Random123/philox.h>
 
 #include <cmath>
 #include <numbers>
-
-#include "lamella/core/error.h"
 
 namespace lamella {
 
@@ -20,21 +20,16 @@ constexpr std::uint32_t high_word(std::uint64_t x) { return static_cast<std::uin
 
 }  // namespace
 
-RandomBits random_bits(std::uint64_t seed,
-                       RandomStream stream,
-                       std::uint64_t step,
-                       std::uint64_t item,
-                       std::uint32_t draw) {
+RandomBits random_bits(
+    std::uint64_t seed, RandomStream stream, std::uint64_t step, std::uint64_t item, std::uint32_t draw) {
     const auto stream_number = static_cast<std::uint32_t>(stream);
     LAMELLA_ASSERT(step < kStepLimit);
     LAMELLA_ASSERT(draw < kDrawLimit);
     LAMELLA_ASSERT(stream_number < kStreamLimit);
 
     // 128 counter bits: item 64, step 40, draw 8, stream 16. Distinct arguments are distinct counters.
-    const r123::Philox4x32::ctr_type counter = {{low_word(item),
-                                                 high_word(item),
-                                                 low_word(step),
-                                                 (high_word(step) << 24) | (draw << 16) | stream_number}};
+    const r123::Philox4x32::ctr_type counter = {
+        {low_word(item), high_word(item), low_word(step), (high_word(step) << 24) | (draw << 16) | stream_number}};
     const r123::Philox4x32::key_type key = {{low_word(seed), high_word(seed)}};
     const auto words = r123::Philox4x32()(counter, key);
     return {{words[0], words[1], words[2], words[3]}};
@@ -51,8 +46,7 @@ Vec3 uniform_vector<3>(const RandomBits& bits) {
     constexpr std::uint64_t kLowMask = (std::uint64_t{1} << 22) - 1;
     const std::uint64_t third = ((bits.half(0) & kLowMask) << 20) | ((bits.half(1) & kLowMask) >> 2);
     constexpr double kScale = 0x1.0p-42;
-    return {{static_cast<double>(bits.half(0) >> 22) * kScale,
-             static_cast<double>(bits.half(1) >> 22) * kScale,
+    return {{static_cast<double>(bits.half(0) >> 22) * kScale, static_cast<double>(bits.half(1) >> 22) * kScale,
              static_cast<double>(third) * kScale}};
 }
 

@@ -11,10 +11,10 @@
 // lognormal and unit_vector go through log, exp, sin and cos of the C library, which may round the last bit differently
 // from one machine to another; on one machine they repeat exactly.
 
+#include "lamella/core/vec.h"
+
 #include <array>
 #include <cstdint>
-
-#include "lamella/core/vec.h"
 
 namespace lamella {
 
@@ -44,11 +44,8 @@ struct RandomBits {
 /// @param step  a time step, or 0 where there is none; below 2^40
 /// @param item  the element's permanent id, never its place in an array that is sorted or compacted
 /// @param draw  0 to 255, for whoever needs more than 128 bits for one item (rejection, three normals)
-RandomBits random_bits(std::uint64_t seed,
-                       RandomStream stream,
-                       std::uint64_t step,
-                       std::uint64_t item,
-                       std::uint32_t draw = 0);
+RandomBits random_bits(
+    std::uint64_t seed, RandomStream stream, std::uint64_t step, std::uint64_t item, std::uint32_t draw = 0);
 
 /// Uniform in [0, 1): a multiple of 2^-53. The two halves k = 0, 1 are independent.
 constexpr double uniform01(const RandomBits& bits, std::size_t k = 0) {

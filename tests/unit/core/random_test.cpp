@@ -1,11 +1,11 @@
 #include "lamella/core/random.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstdint>
 #include <set>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 namespace lamella {
 namespace {
@@ -15,16 +15,13 @@ constexpr int kDraws = 100'000;
 // test that passes once passes always.
 double five_standard_errors(double variance) { return 5.0 * std::sqrt(variance / kDraws); }
 
-RandomBits draw_bits(int i) {
-    return random_bits(7, RandomStream::kBubbleRadius, 0, static_cast<std::uint64_t>(i));
-}
+RandomBits draw_bits(int i) { return random_bits(7, RandomStream::kBubbleRadius, 0, static_cast<std::uint64_t>(i)); }
 
 // The three vectors that [Salmon11] publish for Philox4x32-10, as counter, key, result. The counter words are put
 // together from the arguments as random_bits documents: item, step and draw and stream.
 TEST(RandomBits, MatchesThePublishedVectors) {
     // Counter 0 0 0 0, key 0 0.
-    EXPECT_EQ(random_bits(0, RandomStream{0}, 0, 0),
-              (RandomBits{{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}}));
+    EXPECT_EQ(random_bits(0, RandomStream{0}, 0, 0), (RandomBits{{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}}));
     // Counter and key all ones.
     EXPECT_EQ(random_bits(~std::uint64_t{0}, RandomStream{0xffff}, 0xffffffffffULL, ~std::uint64_t{0}, 0xff),
               (RandomBits{{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}}));
