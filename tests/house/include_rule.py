@@ -49,8 +49,8 @@ LIBRARIES = {
     r"gtest/|gmock/|rapidcheck|benchmark/": [],
 }
 
-# Standard C++ headers have no dot or slash; the C and POSIX ones that the library may use are named.
-SYSTEM = re.compile(r"^(\w+|(sys|sanitizer)/\w+\.h|(fcntl|unistd|dirent|signal|spawn|cuda_runtime)\.h)$")
+# Standard C++ headers have no dot, and but one a slash; the C and POSIX ones that the library may use are named.
+SYSTEM = re.compile(r"^(\w+|experimental/simd|(sys|sanitizer)/\w+\.h|(fcntl|unistd|dirent|signal|spawn|cuda_runtime)\.h)$")
 
 # The library never prints, exits or aborts: the caller owns stdout, stderr and the process. (A failed assertion does.)
 PROCESS = re.compile(r"\bstd::(cout|cerr|clog|exit|abort|quick_exit|print|printf|puts)\b|\bfmt::print\b|\bspdlog::")
