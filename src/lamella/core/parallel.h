@@ -60,8 +60,9 @@ void parallel_for(std::size_t count, Body&& body) {
 template <class Value, class Partial, class Combine>
 Value parallel_reduce(std::size_t count, Value identity, Partial&& partial, Combine&& combine) {
     std::vector<Value> parts((count + kParallelBlock - 1) / kParallelBlock, identity);
-    parallel_blocks(count, kParallelBlock,
-                    [&](std::size_t begin, std::size_t end) { parts[begin / kParallelBlock] = partial(begin, end); });
+    parallel_blocks(count, kParallelBlock, [&](std::size_t begin, std::size_t end) {
+        parts[begin / kParallelBlock] = partial(begin, end);
+    });
     Value total = identity;
     for (const Value& part : parts) total = combine(total, part);
     return total;
