@@ -58,11 +58,14 @@ void parallel_for(std::size_t count, Body&& body) {
 
 /// Combines partial(begin, end) of fixed blocks, in order: the same bits on any number of threads.
 template <class Value, class Partial, class Combine>
-Value parallel_reduce(std::size_t count, Value identity, Partial&& partial, Combine&& combine) {
-    std::vector<Value> parts((count + kParallelBlock - 1) / kParallelBlock, identity);
-    parallel_blocks(count, kParallelBlock, [&](std::size_t begin, std::size_t end) {
-        parts[begin / kParallelBlock] = partial(begin, end);
-    });
+Value parallel_reduce(std::size_t count,
+                      Value identity,
+                      Partial&& partial,
+                      Combine&& combine,
+                      std::size_t block = kParallelBlock) {
+    std::vector<Value> parts((count + block - 1) / block, identity);
+    parallel_blocks(count, block,
+                    [&](std::size_t begin, std::size_t end) { parts[begin / block] = partial(begin, end); });
     Value total = identity;
     for (const Value& part : parts) total = combine(total, part);
     return total;

@@ -20,13 +20,13 @@ namespace stdx = std::experimental;
 using Simd = stdx::simd<double, stdx::simd_abi::deduce_t<double, kLanes>>;
 static_assert(Simd::size() == kLanes);
 
-inline Simd load(const double* p) {
+inline Simd load_lanes(const double* p) {
     Simd v;
     v.copy_from(p, stdx::element_aligned);
     return v;
 }
-inline void store(const Simd& v, double* p) { v.copy_to(p, stdx::element_aligned); }
-inline Simd gather(const double* p, const std::uint32_t* index) {
+inline void store_lanes(const Simd& v, double* p) { v.copy_to(p, stdx::element_aligned); }
+inline Simd gather_lanes(const double* p, const std::uint32_t* index) {
     return Simd([&](auto lane) { return p[index[lane]]; });
 }
 

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "lamella/io/csv.h"
 #include "lamella/core/error.h"
 #include "lamella/core/nearest_word.h"
 #include "lamella/scene/detail/overrides.h"
@@ -216,7 +217,14 @@ std::string resolved_toml(const Scene& scene, const sim::SolverRegistry& registr
 
 std::unique_ptr<sim::Solver> create_solver(const Scene& scene, const sim::SolverRegistry& registry) {
     const sim::SolverEntry& solver = chosen_solver(scene, registry);
-    return solver.create({directory_of(scene), scene.seed, scene.time.end, table_of(scene, solver.name)});
+    const auto read_table = [directory = directory_of(scene)](const std::string& file) {
+        io::CsvTable table = io::read_csv(std::filesystem::path(directory) / file);
+        return sim::NumberTable{std::move(table.header), std::move(table.rows)};
+    };
+    return solver.create({.seed = scene.seed,
+                          .end_time = scene.time.end,
+                          .read_table = read_table,
+                          .options = table_of(scene, solver.name)});
 }
 
 }  // namespace lamella::scene

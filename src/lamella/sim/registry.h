@@ -21,11 +21,18 @@ struct OptionInfo {
     Doc doc;
 };
 
+/// A table of numbers from a file that the user named.
+struct NumberTable {
+    std::vector<std::string> header;
+    std::vector<std::vector<double>> rows;
+};
+
 /// What a solver is made from: the part of a scene that concerns it.
 struct SolverInput {
-    std::string directory;    ///< of the scene file: relative file names in options count from here
     std::uint64_t seed = 1;
     double end_time = 0.0;    ///< in the solver's time unit
+    /// Reads a CSV file with a header line. @throws IoError, InputError
+    std::function<NumberTable(const std::string& file)> read_table;
     Node options;             ///< the solver's own table; an empty table where the scene has none
 };
 

@@ -98,9 +98,9 @@ double contacts_of_group(std::size_t group,
                          Rates<D>& rates) {
     const std::size_t at = group * kLanes;
     Simd position[D];
-    for (std::size_t k = 0; k < D; ++k) position[k] = load(&stage.position[k][at]);
-    const Simd radius = load(&stage.radius[at]);
-    const Simd inverse_radius = load(&stage.inverse_radius[at]);
+    for (std::size_t k = 0; k < D; ++k) position[k] = load_lanes(&stage.position[k][at]);
+    const Simd radius = load_lanes(&stage.radius[at]);
+    const Simd inverse_radius = load_lanes(&stage.inverse_radius[at]);
 
     Simd velocity[D] = {};
     Simd film = 0.0;
@@ -112,12 +112,12 @@ double contacts_of_group(std::size_t group,
         Simd separation[D];
         Simd squared = 0.0;
         for (std::size_t k = 0; k < D; ++k) {
-            separation[k] = position[k] - gather(stage.position[k].data(), other);
-            const Simd image = kImages ? load(&neighbors.image[k][e]) : nearest(separation[k] * inverse_lengths[k]);
+            separation[k] = position[k] - gather_lanes(stage.position[k].data(), other);
+            const Simd image = kImages ? load_lanes(&neighbors.image[k][e]) : nearest(separation[k] * inverse_lengths[k]);
             separation[k] -= box.lengths[k] * image;
             squared += separation[k] * separation[k];
         }
-        const Simd other_radius = gather(stage.radius.data(), other);
+        const Simd other_radius = gather_lanes(stage.radius.data(), other);
         const auto touch = touching(squared, radius, other_radius);
         const Overlap<Simd> overlap(squared, radius, other_radius);
 
@@ -125,7 +125,7 @@ double contacts_of_group(std::size_t group,
         for (std::size_t k = 0; k < D; ++k) velocity[k] += factor * separation[k];
         if constexpr (kGas) {
             const Simd area = select(touch, film_size<D>(squared, overlap, radius, other_radius), Simd(0.0));
-            film += area * (gather(stage.inverse_radius.data(), other) - inverse_radius);
+            film += area * (gather_lanes(stage.inverse_radius.data(), other) - inverse_radius);
             covered += area;
         }
         if constexpr (kStiffness) {
@@ -135,15 +135,15 @@ double contacts_of_group(std::size_t group,
         }
     }
 
-    for (std::size_t k = 0; k < D; ++k) store(model.push_rate * velocity[k], &rates.velocity[k][at]);
+    for (std::size_t k = 0; k < D; ++k) store_lanes(model.push_rate * velocity[k], &rates.velocity[k][at]);
     if constexpr (kGas) {
-        store(film, &rates.film[at]);
+        store_lanes(film, &rates.film[at]);
         // The chords of strong overlaps can add up to more than the surface: then none of it is free.
         const Simd surface = Shape<D>::surface(radius);
         if (model.wall_blocks_gas) covered += wall_contact<D>(box, position, radius);
         Simd weight = larger(surface - covered, Simd(0.0));
         if (model.medium_scaling == MediumScaling::kLsw) weight *= inverse_radius * (1.0 / Shape<D>::kSurface);  // R A^f/A
-        store(weight, &rates.weight[at]);
+        store_lanes(weight, &rates.weight[at]);
     }
     if constexpr (kStiffness) return 2.0 * model.push_rate * stdx::hmax(matrix.largest_eigenvalue());
     return 0.0;

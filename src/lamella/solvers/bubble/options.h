@@ -92,6 +92,7 @@ struct GasOptions {
 struct StartOptions {
     Packing packing = Packing::kGrid;
     std::string file;
+    Vec3 file_box{{0.0, 0.0, 0.0}};
     Sizes sizes = Sizes::kNormal;
     double radius_std = 0.21;
     double size_ratio = 1.4;
@@ -106,8 +107,10 @@ struct StartOptions {
                choices<Packing>({{"grid", Packing::kGrid}, {"random", Packing::kRandom}, {"file", Packing::kFile}}),
                {"first positions: a jittered grid (count is rounded up to a full one), random points, or a CSV file", "-",
                 "[Lankinen20, 3.2.1]"});
-        option("file", file, {"CSV file with columns x, y, z (3D) and radius, for packing = \"file\"; the box is scaled"
-                              " to the gas fraction"});
+        option("file", file, {"CSV file with columns x, y, z (3D) and radius, for packing = \"file\"", "path"});
+        option("file_box", file_box, at_least(0.0),
+               {"edge lengths of the box that the file's bubbles stand in, lower corner at the origin; the gas fraction then"
+                " follows from it. 0: the smallest box of box_shape that holds them, scaled to gas_fraction", "length"});
         option("sizes", sizes,
                choices<Sizes>({{"normal", Sizes::kNormal},
                                {"lognormal", Sizes::kLognormal},

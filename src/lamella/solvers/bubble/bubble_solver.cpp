@@ -1,0 +1,225 @@
+#include "lamella/solvers/bubble/bubble_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "lamella/core/error.h"
+#include "lamella/core/fixed_sum.h"
+#include "lamella/core/parallel.h"
+#include "lamella/solvers/bubble/census.h"
+#include "lamella/solvers/bubble/relax.h"
+#include "lamella/solvers/bubble/removal.h"
+#include "lamella/solvers/bubble/start.h"
+
+namespace lamella::bubble {
+namespace {
+
+SourceLocation location_of(const sim::Node& options, std::string_view key) {
+    const sim::Node* node = options.find(key);
+    return node != nullptr ? node->where : options.where;
+}
+
+/// What no single option can know.
+void check_together(const Options& o, const sim::Node& given) {
+    const auto fail = [&](std::string_view table, std::string_view key, const std::string& message) {
+        const sim::Node* group = table.empty() ? &given : given.find(table);
+        throw InputError(group != nullptr ? location_of(*group, key) : given.where, message);
+    };
+    if (o.time_unit == TimeUnit::kScaled && o.gas.exchange_rate == 0.0)
+        fail("gas", "exchange_rate",
+             "bubble.gas.exchange_rate = 0 stops the scaled time tau = K t/<R_in>^2; set bubble.time_unit = \"mechanical\"");
+    if (o.gas.medium_scaling == MediumScaling::kLsw && o.dimension != 3)
+        fail("gas", "medium_scaling",
+             "bubble.gas.medium_scaling = \"lsw\" is diffusion around spheres and needs bubble.dimension = 3; in 2D use"
+             " \"radius\"");
+    if (o.start.packing == Packing::kFile && o.start.file.empty())
+        fail("start", "packing", "bubble.start.packing = \"file\" needs bubble.start.file, a CSV file with x, y, z, radius");
+    for (std::size_t k = 0; k < static_cast<std::size_t>(o.dimension); ++k)
+        if ((o.start.file_box[k] > 0.0) != (o.start.file_box[0] > 0.0))
+            fail("start", "file_box", "bubble.start.file_box has edges that are 0 and edges that are not; give all or none");
+    if (o.flow.kind == FlowKind::kShear && !o.walls[1])
+        fail("flow", "kind", "bubble.flow.kind = \"shear\" has its gradient along y and needs walls there:"
+                             " bubble.walls = [false, true, false]");
+    if (o.flow.kind == FlowKind::kRegion)
+        for (std::size_t k = 0; k < static_cast<std::size_t>(o.dimension); ++k)
+            if (o.flow.region_low[k] > o.flow.region_high[k])
+                fail("flow", "region_low",
+                     fmt::format("bubble.flow.region_low[{0}] = {1} lies above region_high[{0}] = {2}", k,
+                                 o.flow.region_low[k], o.flow.region_high[k]));
+    const bool published = o.compat.clock || o.compat.step_control != StepControl::kDefault;
+    if (published && o.integrator.method != Method::kAbm2)
+        fail("compat", o.compat.clock ? "clock" : "step_control",
+             "bubble.compat.clock and step_control belong to the published scheme; set bubble.integrator.method = \"abm2\"");
+}
+
+std::vector<GivenBubble> read_bubbles(const Options& o, const sim::SolverInput& input) {
+    if (o.start.packing != Packing::kFile) return {};
+    const sim::NumberTable table = input.read_table(o.start.file);
+    const auto column = [&](const std::string& name) {
+        for (std::size_t c = 0; c < table.header.size(); ++c) {
+            const std::string& title = table.header[c];
+            if (title.substr(0, title.find('[')) == name) return c;
+        }
+        throw InputError({o.start.file, 1, 0}, fmt::format("there is no column {}; columns x, y, {}radius are needed",
+                                                           name, o.dimension == 3 ? "z, " : ""));
+    };
+    const std::size_t radius = column("radius");
+    std::vector<std::size_t> axes = {column("x"), column("y")};
+    if (o.dimension == 3) axes.push_back(column("z"));
+    if (table.rows.empty()) throw InputError({o.start.file, 1, 0}, "there are no bubbles below the header");
+    std::vector<GivenBubble> given(table.rows.size());
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        const auto& row = table.rows[i];
+        given[i].radius = row[radius];
+        for (std::size_t k = 0; k < axes.size(); ++k) given[i].position[k] = row[axes[k]];
+        const bool good = std::isfinite(row[radius]) && row[radius] > 0.0 &&
+                          std::all_of(axes.begin(), axes.end(), [&](std::size_t a) { return std::isfinite(row[a]); });
+        if (!good)
+            throw InputError({o.start.file, static_cast<int>(i) + 2, 0},
+                             fmt::format("a bubble needs a finite position and a radius above 0; radius is {}", row[radius]));
+    }
+    return given;
+}
+
+}  // namespace
+
+template <int D>
+BubbleSolver<D>::BubbleSolver(const Options& options, const sim::SolverInput& input)
+    : options_(options), input_(input) {
+    check_together(options, input.options);
+    system_ = std::make_unique<System<D>>(options_, domain_);
+    time_rate_ = options.time_unit == TimeUnit::kScaled ? system_->model.scaled_time_rate() : 1.0;
+    make_integrator();
+}
+
+template <int D>
+void BubbleSolver<D>::make_integrator() {
+    integrator_ = options_.integrator.method == Method::kRkc2 ? make_rkc2<D>(options_, *system_)
+                                                              : make_abm2<D>(options_, *system_);
+}
+
+template <int D>
+void BubbleSolver<D>::start(const sim::StartContext& context) {
+    System<D>& s = *system_;
+    const std::vector<GivenBubble> given = read_bubbles(options_, input_);
+    context.progress("packing", 0.0);
+    pack<D>(options_, input_.seed, given, s.foam);
+    const bool dilates = options_.start.relax_gas_fraction > 0.0;
+    if (!has_file_box(options_))
+        scale_to_gas_fraction<D>(options_, dilates ? options_.start.relax_gas_fraction : options_.gas_fraction, s.foam);
+    remember_start();
+    s.prepare(LiquidMotion::kAtRest);
+    s.rebuild();
+    if (options_.start.max_iterations > 0) {
+        const Relaxation relaxation = relax(s, options_, context);
+        context.log(relaxation.at_rest ? LogLevel::kInfo : LogLevel::kWarning,
+                    fmt::format("relaxed for {} iterations; mean net force / mean contact force = {:.2g}{}",
+                                relaxation.iterations, relaxation.residual,
+                                relaxation.at_rest ? "" : ", above bubble.start.force_tolerance"));
+    }
+    if (dilates && !has_file_box(options_)) scale_to_gas_fraction<D>(options_, options_.gas_fraction, s.foam);
+    remember_start();
+    s.prepare(LiquidMotion::kAsGiven);
+    s.rebuild();
+    make_integrator();
+    // Rates of the first state, so that the first frame shows them.
+    s.stage_current();
+    const Evaluation first = s.evaluate(Gas::kOn, Stiffness::kSkip);
+    s.keep_rates(first.gas);
+}
+
+/// The state from which times, paths, displacements and means of the start count.
+template <int D>
+void BubbleSolver<D>::remember_start() {
+    Foam<D>& foam = system_->foam;
+    Model& model = system_->model;
+    for (std::size_t k = 0; k < D; ++k) {
+        foam.start[k] = foam.marked[k] = foam.position[k];
+        std::fill(foam.wraps[k].begin(), foam.wraps[k].end(), 0);
+        std::fill(foam.velocity[k].begin(), foam.velocity[k].end(), 0.0);
+    }
+    std::fill(foam.path_length.begin(), foam.path_length.end(), 0.0);
+    start_count_ = static_cast<std::int64_t>(foam.live);
+    start_gas_ = system_->total_size();
+    model.total_size = start_gas_;
+    model.largest_count = static_cast<double>(start_count_);
+    model.initial_mean_radius = system_->mean_radius();
+    model.initial_mean_surface = exact_sum(foam.slots, [&](std::size_t i) {
+                                     return Shape<D>::surface(Shape<D>::radius(foam.size[i]));
+                                 }) /
+                                 model.largest_count;
+}
+
+template <int D>
+sim::StepReport BubbleSolver<D>::advance(double time_limit) {
+    const double left = time_limit - time_;
+    double longest = left / time_rate_;
+    // Two equal steps rather than a long one and a sliver.
+    const double wanted = std::min(integrator_->next_step(), options_.integrator.max_step);
+    const bool lands = longest <= wanted;
+    if (!lands && longest < 2.0 * wanted) longest *= 0.5;
+
+    const Step step = integrator_->step(*system_, longest);
+    mechanical_time_ += step.clock;
+    const bool full = lands && step.time == longest;
+    time_ = full && step.clock == step.time ? time_limit : time_ + step.clock * time_rate_;
+    ++steps_;
+    evaluations_ += step.evaluations;
+    rejections_ += step.rejections;
+
+    std::vector<sim::Event> removed = remove_vanished(*system_, options_.compat.removal);
+    if (!removed.empty()) integrator_->foam_changed();
+    for (sim::Event& event : removed) {
+        event.time = time_;
+        events_.push_back(std::move(event));
+    }
+    return {.step = step.clock * time_rate_, .evaluations = step.evaluations, .iterations = 0, .residual = step.error};
+}
+
+template <int D>
+std::optional<std::string> BubbleSolver<D>::stop_reason() const {
+    const Foam<D>& foam = system_->foam;
+    if (foam.live <= static_cast<std::size_t>(options_.end_count))
+        return fmt::format("{} bubbles are left (bubble.end_count = {})", foam.live, options_.end_count);
+    const double largest = Shape<D>::radius(parallel_max(foam.slots, 0.0, [&](std::size_t i) { return foam.size[i]; }));
+    if (2.0 * largest >= foam.box.shortest_edge())
+        return fmt::format("the largest bubble, of radius {:.4g}, spans the box", largest);
+    return std::nullopt;
+}
+
+template <int D>
+std::optional<double> BubbleSolver<D>::progress() const {
+    if (!system_->model.exchanges_gas() || start_count_ <= options_.end_count) return std::nullopt;
+    const auto ratio = [&](double n) { return std::log(static_cast<double>(start_count_) / n); };
+    return ratio(static_cast<double>(system_->foam.live)) / ratio(options_.end_count);
+}
+
+template <int D>
+std::vector<sim::Event> BubbleSolver<D>::take_events() {
+    return std::exchange(events_, {});
+}
+
+template <int D>
+void BubbleSolver<D>::mark_frame() {
+    system_->foam.marked = system_->foam.position;
+}
+
+/// Slots of the live bubbles by id: what leaves the solver does not depend on how bubbles are stored.
+template <int D>
+std::vector<std::uint32_t> BubbleSolver<D>::id_order() const {
+    const Foam<D>& foam = system_->foam;
+    std::vector<std::uint32_t> order;
+    order.reserve(foam.live);
+    for (std::size_t i = 0; i < foam.slots; ++i)
+        if (foam.alive(i)) order.push_back(static_cast<std::uint32_t>(i));
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return foam.id[a] < foam.id[b]; });
+    return order;
+}
+
+template class BubbleSolver<2>;
+template class BubbleSolver<3>;
+
+}  // namespace lamella::bubble

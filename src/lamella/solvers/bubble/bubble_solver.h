@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "lamella/sim/registry.h"
+#include "lamella/sim/solver.h"
+#include "lamella/solvers/bubble/integrator.h"
+#include "lamella/solvers/bubble/options.h"
+#include "lamella/solvers/bubble/system.h"
+
+namespace lamella::bubble {
+
+/// The wet-foam bubble model with gas exchange in D dimensions [Lankinen20]: discs or balls that push each other
+/// apart, move against the liquid, exchange gas through the films between them and through the liquid, and vanish.
+template <int D>
+class BubbleSolver final : public sim::Solver {
+public:
+    /// @throws InputError  options that do not go together
+    BubbleSolver(const Options& options, const sim::SolverInput& input);
+
+    void start(const sim::StartContext& context) override;
+    sim::StepReport advance(double time_limit) override;
+
+    double time() const override { return time_; }
+    std::string time_unit() const override { return "-"; }
+    std::int64_t step() const override { return steps_; }
+    std::optional<std::string> stop_reason() const override;
+    std::optional<double> progress() const override;
+
+    sim::Frame frame() const override;
+    void mark_frame() override;
+    std::vector<sim::Scalar> scalars() const override;
+    std::vector<sim::Event> take_events() override;
+    std::vector<sim::Scalar> characteristic_numbers() const override;
+
+    void save(sim::StateWriter& out) const override;
+    void load(sim::StateReader& in) override;
+
+    const System<D>& system() const { return *system_; }
+
+private:
+    std::vector<std::uint32_t> id_order() const;
+    void remember_start();
+    void make_integrator();
+
+    Options options_;
+    sim::SolverInput input_;
+    double time_rate_;  ///< solver time per mechanical time
+    LocalDomain domain_;
+    std::unique_ptr<System<D>> system_;
+    std::unique_ptr<Integrator<D>> integrator_;
+
+    double time_ = 0.0;
+    std::int64_t steps_ = 0;
+    std::int64_t evaluations_ = 0;
+    std::int64_t rejections_ = 0;
+    double mechanical_time_ = 0.0;
+    double start_gas_ = 0.0;     ///< sum of q at the start
+    std::int64_t start_count_ = 0;
+    std::vector<sim::Event> events_;
+};
+
+/// Adds the solver "bubble".
+void register_bubble(sim::SolverRegistry& registry);
+
+}  // namespace lamella::bubble

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "lamella/sim/archive.h"
+#include "lamella/solvers/bubble/system.h"
+
+namespace lamella::bubble {
+
+/// What one accepted step did.
+struct Step {
+    double time = 0.0;   ///< mechanical time by which the state advanced
+    double clock = 0.0;  ///< time by which the clock advances: the same, unless compat.clock asks for the published bug
+    double error = 0.0;  ///< its error estimate [length]
+    std::int64_t evaluations = 0;  ///< of the attempts that counted (an attempt whose lists were outgrown is repeated)
+    std::int64_t rejections = 0;
+};
+
+/// Advances a System by adaptive steps.
+template <int D>
+class Integrator {
+public:
+    virtual ~Integrator() = default;
+
+    /// Takes one step of at most `longest`. @throws NumericalError  no step is small enough; the state is unchanged
+    virtual Step step(System<D>& system, double longest) = 0;
+    /// The foam changed between steps (bubbles vanished): rates must be evaluated anew.
+    virtual void foam_changed() = 0;
+    /// The step that the next attempt would like to take.
+    virtual double next_step() const = 0;
+
+    virtual void save(sim::StateWriter& out, const std::vector<std::uint32_t>& order) const = 0;
+    virtual void load(sim::StateReader& in, System<D>& system) = 0;
+};
+
+template <int D>
+std::unique_ptr<Integrator<D>> make_rkc2(const Options& options, System<D>& system);
+template <int D>
+std::unique_ptr<Integrator<D>> make_abm2(const Options& options, System<D>& system);
+
+}  // namespace lamella::bubble

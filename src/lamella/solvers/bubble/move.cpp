@@ -1,0 +1,48 @@
+#include "lamella/solvers/bubble/move.h"
+
+#include <cmath>
+
+#include "lamella/core/fixed_sum.h"
+#include "lamella/core/parallel.h"
+
+namespace lamella::bubble {
+
+template <int D>
+void stage_moved(System<D>& system, const Increment<D>& increment) {
+    const Foam<D>& foam = system.foam;
+    parallel_for(system.length(), [&](std::size_t i) {
+        std::int32_t crossings = 0;
+        for (std::size_t k = 0; k < D; ++k) {
+            const double x = foam.position[k][i] + increment.position[k][i];
+            system.stage.position[k][i] =
+                foam.box.periodic[k] ? wrapped(x, foam.box.lengths[k], crossings) : x;
+        }
+        set_radius<D>(system.model, foam.size[i] + increment.size[i], foam.alive(i), system.stage.radius[i],
+                      system.stage.inverse_radius[i]);
+    });
+}
+
+template <int D>
+void accept_moved(System<D>& system, const Increment<D>& increment) {
+    Foam<D>& foam = system.foam;
+    parallel_for(foam.slots, [&](std::size_t i) {
+        if (!foam.alive(i)) return;
+        double squared = 0.0;
+        for (std::size_t k = 0; k < D; ++k) {
+            const double move = increment.position[k][i];
+            squared += move * move;
+            if (foam.box.periodic[k])
+                wrapped(foam.position[k][i] + move, foam.box.lengths[k], foam.wraps[k][i]);
+            foam.position[k][i] = system.stage.position[k][i];
+        }
+        foam.path_length[i] += std::sqrt(squared);
+        foam.size[i] += increment.size[i];
+    });
+}
+
+template void stage_moved<2>(System<2>&, const Increment<2>&);
+template void stage_moved<3>(System<3>&, const Increment<3>&);
+template void accept_moved<2>(System<2>&, const Increment<2>&);
+template void accept_moved<3>(System<3>&, const Increment<3>&);
+
+}  // namespace lamella::bubble

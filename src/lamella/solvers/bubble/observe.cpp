@@ -1,0 +1,149 @@
+// What can be seen of a bubble foam: frames, scalars, the numbers of `lamella check`.
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "lamella/core/fixed_sum.h"
+#include "lamella/core/parallel.h"
+#include "lamella/solvers/bubble/bubble_solver.h"
+#include "lamella/solvers/bubble/census.h"
+
+namespace lamella::bubble {
+namespace {
+
+template <class Value>
+sim::Field field(const char* name, int components, const std::vector<std::uint32_t>& order, Value&& value) {
+    sim::Field f{.name = name, .unit = "-", .components = components, .integer = false, .values = {}};
+    const auto c = static_cast<std::size_t>(components);
+    f.values.resize(c * order.size());
+    parallel_for(order.size(), [&](std::size_t n) {
+        for (std::size_t k = 0; k < c; ++k) f.values[c * n + k] = value(order[n], k);
+    });
+    return f;
+}
+
+/// Vectors have three components in two dimensions too; the third is 0.
+template <int D>
+double component(const Columns<D>& columns, std::size_t i, std::size_t k) {
+    return k < D ? columns[k][i] : 0.0;
+}
+
+}  // namespace
+
+template <int D>
+sim::Frame BubbleSolver<D>::frame() const {
+    const Foam<D>& foam = system_->foam;
+    const auto order = id_order();
+    const Census<D> census = take_census(*system_, options_);
+    const Column& energy = options_.compat.energy ? census.energy_thesis : census.energy;
+    const Vec<D> inverse = foam.box.inverse_lengths();
+
+    sim::Frame frame;
+    frame.solver = "bubble";
+    frame.time = time_;
+    frame.time_unit = time_unit();
+    frame.step = steps_;
+    frame.box.emplace();
+    frame.box->dimension = D;
+    for (std::size_t k = 0; k < D; ++k) {
+        frame.box->lengths[k] = foam.box.lengths[k];
+        frame.box->periodic[k] = foam.box.periodic[k];
+    }
+    frame.points.length_unit = "-";
+    frame.points.position.resize(order.size());
+    frame.points.radius.resize(order.size());
+    parallel_for(order.size(), [&](std::size_t n) {
+        for (std::size_t k = 0; k < D; ++k) frame.points.position[n][k] = foam.position[k][order[n]];
+        frame.points.radius[n] = Shape<D>::radius(foam.size[order[n]]);
+    });
+
+    auto& fields = frame.points.fields;
+    const auto add = [&](const char* name, int components, auto&& value) -> sim::Field& {
+        return fields.emplace_back(field(name, components, order, value));
+    };
+    using Index = std::size_t;
+    add("id", 1, [&](Index i, Index) { return static_cast<double>(foam.id[i]); }).integer = true;
+    add("radius_rate", 1, [&](Index i, Index) {
+        const double r = Shape<D>::radius(foam.size[i]);
+        return foam.size_rate[i] / (D == 2 ? 2.0 * r : 3.0 * r * r);
+    });
+    add("velocity", 3, [&](Index i, Index k) { return component<D>(foam.velocity, i, k); });
+    add("path_length", 1, [&](Index i, Index) { return foam.path_length[i]; });
+    add("displacement", 3, [&](Index i, Index k) {
+        return k < D ? foam.position[k][i] + foam.wraps[k][i] * foam.box.lengths[k] - foam.start[k][i] : 0.0;
+    });
+    add("frame_displacement", 3, [&](Index i, Index k) {
+        if (k >= D) return 0.0;
+        const double s = foam.position[k][i] - foam.marked[k][i];
+        return s - foam.box.lengths[k] * std::nearbyint(s * inverse[k]);
+    });
+    add("energy", 1, [&](Index i, Index) { return energy[i]; });
+    add("contacts", 1, [&](Index i, Index) { return static_cast<double>(census.contacts[i]); }).integer = true;
+    add("pressure", 1, [&](Index i, Index) { return census.pressure[i]; });
+    add("free_surface", 1, [&](Index i, Index) { return census.free_surface[i]; });
+    frame.scalars = scalars();
+    return frame;
+}
+
+template <int D>
+std::vector<sim::Scalar> BubbleSolver<D>::scalars() const {
+    const Model& model = system_->model;
+    const Census<D> census = take_census(*system_, options_);
+    std::vector<sim::Scalar> list = {
+        {"scaled_time", "-", mechanical_time_ * model.scaled_time_rate(), "tau = K t/<R_in>^2"},
+        {"mechanical_time", "-", mechanical_time_, "t, in units of the scene"},
+        {"initial_mean_radius", "-", model.initial_mean_radius, "mean radius at the start"},
+        {"energy", "-", options_.compat.energy ? census.total_energy_thesis : census.total_energy,
+         options_.compat.energy ? "sigma_0 sum (S - d)^2, eq. 3.2" : "contact energy, the potential of the forces"},
+        {"energy_thesis", "-", census.total_energy_thesis, "sigma_0 sum (S - d)^2, eq. 3.2"},
+        {"volume_error", "-", system_->total_size() / start_gas_ - 1.0, "total gas relative to the start, minus 1"},
+        {"critical_radius", "-", census.critical_radius, "rho of eq. 2.28: smaller free bubbles shrink"},
+        {"free_surface", "-", census.mean_free_surface, "<A^f>/<A>"},
+    };
+    static constexpr const char* kAxes = "xyz";
+    double trace = 0.0;
+    for (std::size_t a = 0; a < D; ++a) {
+        trace += census.stress[a * D + a];
+        for (std::size_t b = a; b < D; ++b)
+            list.push_back({fmt::format("stress_{}{}", kAxes[a], kAxes[b]), "-", census.stress[a * D + b],
+                            "-(1/V) sum F_a r_b over contacts"});
+    }
+    list.push_back({"pressure", "-", -trace / D, "-trace(stress)/d"});
+    list.push_back({"steps", "-", static_cast<double>(steps_), "accepted steps"});
+    list.push_back({"evaluations", "-", static_cast<double>(evaluations_), "of the right-hand side"});
+    list.push_back({"rejections", "-", static_cast<double>(rejections_), "rejected steps"});
+    list.push_back({"mean_step", "-", steps_ > 0 ? mechanical_time_ / static_cast<double>(steps_) : 0.0,
+                    "mechanical time per step"});
+    return list;
+}
+
+template <int D>
+std::vector<sim::Scalar> BubbleSolver<D>::characteristic_numbers() const {
+    const Model& m = system_->model;
+    const double count = options_.count;
+    const double mean = options_.mean_radius;
+    const double relaxation = mean * 2.0 / m.push_rate;
+    std::vector<sim::Scalar> list = {
+        {"mechanical_time_unit", "-", options_.viscosity / options_.surface_tension, "mu_0/sigma_0"},
+        {"relaxation_time", "-", relaxation, "of one contact: 2 <R_in> mu_0/F_0"},
+        {"step_limit_explicit", "-", relaxation / 3.0,
+         "longest step of a method with stability interval 2 in a jammed foam: 2/(3 F_0/(mu_0 <R_in>))"},
+        {"step_limit_pec", "-", relaxation / 12.0, "longest step of abm2 without evaluate_again: 0.5/lambda"},
+    };
+    if (m.exchanges_gas()) {
+        list.push_back({"coarsening_time", "-", mean * mean / m.exchange_rate, "<R_in>^2/K: one unit of scaled time"});
+        list.push_back({"relaxation_per_coarsening", "-", relaxation * m.scaled_time_rate(),
+                        "keep well below 1: the foam must relax faster than it coarsens"});
+    }
+    const double per_bubble = D == 2 ? 260.0 : 360.0;
+    const double lists = D == 2 ? 30.0 : 60.0;
+    list.push_back({"memory", "MB", count * (per_bubble + lists) * 1e-6, "state and neighbor lists"});
+    return list;
+}
+
+template class BubbleSolver<2>;
+template class BubbleSolver<3>;
+
+}  // namespace lamella::bubble

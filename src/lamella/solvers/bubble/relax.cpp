@@ -1,0 +1,150 @@
+#include "lamella/solvers/bubble/relax.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lamella/core/error.h"
+#include "lamella/core/fixed_sum.h"
+#include "lamella/core/parallel.h"
+#include "lamella/solvers/bubble/census.h"
+#include "lamella/solvers/bubble/move.h"
+
+namespace lamella::bubble {
+namespace {
+
+// The constants recommended in [Bitzek06].
+constexpr int kDelay = 5;
+constexpr double kGrow = 1.1;
+constexpr double kShrink = 0.5;
+constexpr double kMixing = 0.1;
+constexpr double kMixingDecay = 0.99;
+constexpr int kCheckInterval = 20;
+
+template <int D>
+double component_product(const Columns<D>& a, const Columns<D>& b, std::size_t i) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < D; ++k) sum += a[k][i] * b[k][i];
+    return sum;
+}
+
+template <int D>
+class Fire {
+public:
+    Fire(System<D>& system, const Options& options) : system_(system), options_(options) {
+        for (auto& column : velocity_) {
+            column.assign(system.length(), 0.0);
+            system.attached.push_back(&column);
+        }
+        evaluate(Stiffness::kBound);
+        step_ = 0.1 * longest_step_;
+    }
+    ~Fire() { system_.attached.clear(); }
+
+    void iterate() {
+        const auto product = [&](const Columns<D>& a, const Columns<D>& b) {
+            return exact_sum(system_.foam.slots, [&](std::size_t i) { return component_product<D>(a, b, i); });
+        };
+        const Columns<D>& force = system_.rates.velocity;
+        const double power = product(force, velocity_);
+        double keep = 0.0;  // v = keep v + turn F
+        double turn = 0.0;
+        if (power > 0.0) {
+            const double forces = product(force, force);
+            keep = 1.0 - mixing_;
+            turn = forces > 0.0 ? mixing_ * std::sqrt(product(velocity_, velocity_) / forces) : 0.0;
+            if (++downhill_ > kDelay) {
+                step_ = std::min(kGrow * step_, longest_step_);
+                mixing_ *= kMixingDecay;
+            }
+        } else {
+            downhill_ = 0;
+            step_ = std::max(kShrink * step_, 1e-3 * longest_step_);
+            mixing_ = kMixing;
+        }
+        // No bubble moves further than a tenth of the mean radius in one iteration.
+        const double farthest = 0.1 * options_.mean_radius / step_;
+        parallel_for(system_.foam.slots, [&](std::size_t i) {
+            double squared = 0.0;
+            for (std::size_t k = 0; k < D; ++k) {
+                velocity_[k][i] = keep * velocity_[k][i] + (turn + step_) * force[k][i];
+                squared += velocity_[k][i] * velocity_[k][i];
+            }
+            const double shorten = squared > farthest * farthest ? farthest / std::sqrt(squared) : 1.0;
+            std::int32_t crossings = 0;
+            for (std::size_t k = 0; k < D; ++k) {
+                velocity_[k][i] *= shorten;
+                double& x = system_.foam.position[k][i];
+                x += step_ * velocity_[k][i];
+                if (system_.foam.box.periodic[k]) x = wrapped(x, system_.foam.box.lengths[k], crossings);
+            }
+        });
+        const bool outgrown = system_.expansion() >= system_.reach();
+        if (outgrown) system_.rebuild();
+        evaluate(outgrown ? Stiffness::kBound : Stiffness::kSkip);
+    }
+
+    /// Mean |F_i| over mean |F_ij|, 0 when the foam does not jam.
+    double residual() const {
+        const Census<D> census = take_census(system_, options_);
+        const auto live = static_cast<double>(system_.foam.live);
+        const double unit = options_.surface_tension * options_.mean_radius * options_.mean_radius;
+        const bool walls = std::any_of(system_.foam.box.periodic.begin(), system_.foam.box.periodic.end(),
+                                       [](bool periodic) { return !periodic; });
+        if (!walls && census.total_energy / live < 1e-16 * unit) return 0.0;
+        const double mean_force = exact_sum(system_.foam.slots, [&](std::size_t i) {
+                                      return std::sqrt(component_product<D>(system_.rates.velocity,
+                                                                            system_.rates.velocity, i));
+                                  }) *
+                                  options_.viscosity / live;
+        if (mean_force == 0.0) return 0.0;
+        // Bubbles that touch only walls have no contact force to compare with: use the scale of the forces instead.
+        const double scale = std::max(census.mean_contact_force, 1e-6 * system_.model.energy_scale);
+        return mean_force / scale;
+    }
+
+private:
+    void evaluate(Stiffness stiffness) {
+        system_.stage_current();
+        const Evaluation evaluation = system_.evaluate(Gas::kOff, stiffness);
+        if (stiffness == Stiffness::kBound)
+            longest_step_ = 1.0 / std::sqrt(std::max(evaluation.stiffness, 0.1 * system_.model.push_rate));
+    }
+
+    System<D>& system_;
+    const Options& options_;
+    Columns<D> velocity_;
+    double step_ = 0.0;
+    double longest_step_ = 0.0;
+    double mixing_ = kMixing;
+    int downhill_ = 0;
+};
+
+}  // namespace
+
+template <int D>
+Relaxation relax(System<D>& system, const Options& options, const sim::StartContext& context) {
+    Fire<D> fire(system, options);
+    Relaxation result;
+    double first = 0.0;
+    for (;; ++result.iterations) {
+        if (result.iterations % kCheckInterval == 0) {
+            if (context.stop_requested()) throw Interrupted();
+            result.residual = fire.residual();
+            result.at_rest = result.residual < options.start.force_tolerance;
+            first = std::max(first, result.residual);
+            const double goal = std::log(first / options.start.force_tolerance);
+            context.progress("relaxing", goal > 0.0 ? std::clamp(std::log(first / std::max(result.residual, 1e-300)) / goal,
+                                                                 0.0, 1.0)
+                                                    : 1.0);
+            if (result.at_rest) break;
+        }
+        if (result.iterations >= options.start.max_iterations) break;
+        fire.iterate();
+    }
+    return result;
+}
+
+template Relaxation relax<2>(System<2>&, const Options&, const sim::StartContext&);
+template Relaxation relax<3>(System<3>&, const Options&, const sim::StartContext&);
+
+}  // namespace lamella::bubble

@@ -1,0 +1,55 @@
+#include "lamella/solvers/bubble/removal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "lamella/core/error.h"
+#include "lamella/core/fixed_sum.h"
+#include "lamella/core/parallel.h"
+
+namespace lamella::bubble {
+
+template <int D>
+std::vector<sim::Event> remove_vanished(System<D>& system, bool as_printed) {
+    Foam<D>& foam = system.foam;
+    const double limit = system.model.min_size;
+    // A live bubble can stand at q <= 0 here; vanished ones are exactly 0 and have no radius in the stage.
+    const auto exists = [&](std::size_t i) { return system.stage.radius[i] > 0.0; };
+    std::vector<std::uint32_t> removed;
+    const auto smallest = -parallel_max(foam.slots, -limit - 1.0, [&](std::size_t i) {
+        return exists(i) ? -foam.size[i] : -limit - 1.0;
+    });
+    if (system.domain().largest(-smallest) < -limit) return {};
+    for (std::size_t i = 0; i < foam.slots; ++i)
+        if (exists(i) && foam.size[i] <= limit) removed.push_back(static_cast<std::uint32_t>(i));
+    if (removed.size() >= foam.live)
+        throw NumericalError(fmt::format("all {} bubbles would vanish in one step", foam.live));
+    std::sort(removed.begin(), removed.end(), [&](auto a, auto b) { return foam.id[a] < foam.id[b]; });
+
+    std::vector<sim::Event> events;
+    events.reserve(removed.size());
+    double excess = 0.0;
+    for (const std::uint32_t i : removed) {
+        excess += foam.size[i];
+        sim::Event event{.time = 0.0, .kind = "remove", .position = {}, .detail = fmt::format("bubble {}", foam.id[i])};
+        for (std::size_t k = 0; k < D; ++k) event.position[k] = foam.position[k][i];
+        events.push_back(std::move(event));
+        foam.size[i] = foam.size_rate[i] = 0.0;
+        for (std::size_t k = 0; k < D; ++k) foam.velocity[k][i] = 0.0;
+        system.stage.radius[i] = 0.0;
+        for (Column* column : system.attached) (*column)[i] = 0.0;
+    }
+    foam.live -= removed.size();
+
+    const double share = excess / system.total_size();
+    const double factor = as_printed && share > 0.0 ? std::pow(1.0 + std::pow(share, 1.0 / D), D) : 1.0 + share;
+    parallel_for(foam.slots, [&](std::size_t i) { foam.size[i] *= factor; });
+    return events;
+}
+
+template std::vector<sim::Event> remove_vanished<2>(System<2>&, bool);
+template std::vector<sim::Event> remove_vanished<3>(System<3>&, bool);
+
+}  // namespace lamella::bubble

@@ -1,0 +1,286 @@
+// Runge-Kutta-Chebyshev of order 2 [Sommeijer98]: s evaluations buy a step of 0.65 s^2 relaxation times, where an
+// explicit method of fixed order gets s/2. Written in increments d_j = Y_j - y_n, so that the gas, a linear
+// invariant, is conserved to round-off, and so that the state is read once per stage.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "lamella/core/error.h"
+#include "lamella/core/parallel.h"
+#include "lamella/core/simd.h"
+#include "lamella/solvers/bubble/integrator.h"
+#include "lamella/solvers/bubble/move.h"
+
+namespace lamella::bubble {
+namespace {
+
+constexpr int kMostStages = 250;
+constexpr std::size_t kGroupsPerBlock = 512;
+constexpr double kDamping = 2.0 / 13.0;
+
+/// d_j = mu d_(j-1) + nu d_(j-2) + h (rate f_(j-1) + first_rate f_0)
+struct StageWeights {
+    double mu, nu, rate, first_rate;
+};
+
+/// The weights of an s-stage step [Sommeijer98, section 2].
+std::vector<StageWeights> stage_weights(int s) {
+    const double w0 = 1.0 + kDamping / (s * s);
+    // Chebyshev polynomials and their first two derivatives at w0.
+    const auto n = static_cast<std::size_t>(s) + 1;
+    std::vector<double> t(n), t1(n), t2(n);
+    t[0] = 1.0;
+    t[1] = w0;
+    t1[1] = 1.0;
+    for (std::size_t j = 2; j < n; ++j) {
+        t[j] = 2.0 * w0 * t[j - 1] - t[j - 2];
+        t1[j] = 2.0 * t[j - 1] + 2.0 * w0 * t1[j - 1] - t1[j - 2];
+        t2[j] = 4.0 * t1[j - 1] + 2.0 * w0 * t2[j - 1] - t2[j - 2];
+    }
+    const double w1 = t1[n - 1] / t2[n - 1];
+    std::vector<double> b(n);
+    for (std::size_t j = 2; j < n; ++j) b[j] = t2[j] / (t1[j] * t1[j]);
+    b[0] = b[1] = b[2];
+    std::vector<StageWeights> weights(n);
+    weights[1] = {0.0, 0.0, 0.0, b[1] * w1};
+    for (std::size_t j = 2; j < n; ++j) {
+        const double rate = 2.0 * b[j] * w1 / b[j - 1];
+        const double a = 1.0 - b[j - 1] * t[j - 1];
+        weights[j] = {2.0 * b[j] * w0 / b[j - 1], -b[j] / b[j - 2], rate, -a * rate};
+    }
+    return weights;
+}
+
+enum class StagesEnd {
+    kDone,
+    kListsOutgrown,  ///< a bubble left the reach of the neighbor lists: build new ones and repeat the same step
+    kTooFar,         ///< a bubble jumped out of its neighborhood: the step must be shorter
+};
+
+template <int D>
+class Rkc2 final : public Integrator<D> {
+public:
+    explicit Rkc2(const Options& options) : options_(options.integrator), next_step_(options.integrator.initial_step) {}
+
+    Step step(System<D>& system, double longest) override;
+    void foam_changed() override { rates_current_ = false; }
+    double next_step() const override { return next_step_; }
+
+    void save(sim::StateWriter& out, const std::vector<std::uint32_t>&) const override {
+        out.write_value("integrator/next_step", next_step_);
+        out.write_value("integrator/stiffness", stiffness_);
+        out.write_value("integrator/rates_current", std::int64_t{rates_current_});
+    }
+    void load(sim::StateReader& in, System<D>&) override {
+        next_step_ = in.read_double("integrator/next_step");
+        stiffness_ = in.read_double("integrator/stiffness");
+        rates_current_ = in.read_integer("integrator/rates_current") != 0;
+    }
+
+private:
+    void evaluate_first(System<D>& system);
+    StagesEnd run_stages(System<D>& system, double h, int stages);
+    double advance_stage(System<D>& system, const StageWeights& weights, double h, bool first);
+    double step_error(const System<D>& system, const GasExchange& gas, double h) const;
+
+    IntegratorOptions options_;
+    double next_step_;
+    double stiffness_ = 0.0;      // largest relaxation rate at the current state
+    bool rates_current_ = false;  // foam.velocity and size_rate belong to the current state
+
+    // Scratch of one step.
+    Increment<D> last_, before_;  // d_(j-1), d_(j-2)
+    GasExchange gas_;             // of the last evaluated stage
+    double start_expansion_ = 0.0;
+    double stage_reach_ = 0.0;    // largest |dx| + dR of the stages so far
+    double expected_reach_ = 0.0; // of the last step: decides whether lists are rebuilt before the next
+    std::int64_t evaluations_ = 0;
+};
+
+template <int D>
+void Rkc2<D>::evaluate_first(System<D>& system) {
+    if (rates_current_) return;
+    system.stage_current();
+    const Evaluation first = system.evaluate(Gas::kOn, Stiffness::kBound);
+    system.keep_rates(first.gas);
+    stiffness_ = first.stiffness;
+    rates_current_ = true;
+    ++evaluations_;
+}
+
+/// One stage: the increment, the state that it leads to, and the largest |dx| + dR from the step's start.
+template <int D>
+double Rkc2<D>::advance_stage(System<D>& system, const StageWeights& w, double h, bool first) {
+    const Foam<D>& foam = system.foam;
+    Stage<D>& stage = system.stage;
+    const Rates<D>& rates = system.rates;
+    const Model& model = system.model;
+    const bool exchange = model.exchanges_gas();
+    const double rate = h * w.rate;
+    const double first_rate = h * w.first_rate;
+
+    const auto group_reach = [&](std::size_t at) {
+        Simd squared = 0.0;
+        for (std::size_t k = 0; k < D; ++k) {
+            Simd d = first_rate * load_lanes(&foam.velocity[k][at]);
+            if (!first)
+                d += w.mu * load_lanes(&last_.position[k][at]) + w.nu * load_lanes(&before_.position[k][at]) +
+                     rate * load_lanes(&rates.velocity[k][at]);
+            store_lanes(d, &before_.position[k][at]);
+            store_lanes(load_lanes(&foam.position[k][at]) + d, &stage.position[k][at]);
+            squared += d * d;
+        }
+        const Simd reach = square_root(squared);
+        if (!exchange) return stdx::hmax(reach);
+
+        const Simd old_inverse = load_lanes(&stage.inverse_radius[at]);
+        Simd d = first_rate * load_lanes(&foam.size_rate[at]);
+        if (!first) {
+            const Simd film = load_lanes(&rates.film[at]);
+            const Simd weight = load_lanes(&rates.weight[at]);
+            const Simd size_rate =
+                gas_.film_factor * film + gas_.medium_factor * weight * (gas_.inverse_rho - old_inverse);
+            d += w.mu * load_lanes(&last_.size[at]) + w.nu * load_lanes(&before_.size[at]) + rate * size_rate;
+        }
+        store_lanes(d, &before_.size[at]);
+        const Simd size = load_lanes(&foam.size[at]);
+        const Simd moved = larger(size + d, Simd(model.floor_size));
+        Simd radius;
+        if constexpr (D == 2) {
+            radius = square_root(moved);
+        } else {
+            double lanes[kLanes];
+            store_lanes(moved, lanes);
+            for (double& lane : lanes) lane = cube_root(lane);
+            radius = load_lanes(lanes);
+        }
+        const auto alive = size > Simd(0.0);
+        const Simd inverse = select(alive, 1.0 / radius, Simd(0.0));
+        store_lanes(select(alive, radius, Simd(0.0)), &stage.radius[at]);
+        store_lanes(inverse, &stage.inverse_radius[at]);
+        // R' - R <= (q' - q)/R'^(d-1) for growing bubbles
+        Simd growth = larger(d, Simd(0.0)) * inverse;
+        if constexpr (D == 3) growth *= inverse;
+        return stdx::hmax(reach + growth);
+    };
+    const double reach = parallel_reduce(
+        system.length() / kLanes, 0.0,
+        [&](std::size_t begin, std::size_t end) {
+            double largest = 0.0;
+            for (std::size_t g = begin; g < end; ++g) largest = std::max(largest, group_reach(g * kLanes));
+            return largest;
+        },
+        [](double a, double b) { return std::max(a, b); }, kGroupsPerBlock);
+    std::swap(last_, before_);
+    return system.domain().largest(reach);
+}
+
+/// Stages 1 to s; `stage` is then the new state, evaluated.
+template <int D>
+StagesEnd Rkc2<D>::run_stages(System<D>& system, double h, int stages) {
+    const std::vector<StageWeights> weights = stage_weights(stages);
+    // A bubble that jumps by half its spacing has left its neighborhood: no error estimate would catch where it lands.
+    const double farthest = 0.5 * std::pow(system.foam.box.volume() / static_cast<double>(system.foam.live), 1.0 / D);
+    stage_reach_ = 0.0;
+    last_.assign_zero(system.length());  // d_0, which stage 2 reads
+    before_.resize(system.length());
+    for (int j = 1; j <= stages; ++j) {
+        const double reach = advance_stage(system, weights[static_cast<std::size_t>(j)], h, j == 1);
+        stage_reach_ = std::max(stage_reach_, reach);
+        if (!(stage_reach_ < farthest)) return StagesEnd::kTooFar;
+        if (start_expansion_ + stage_reach_ >= system.reach()) return StagesEnd::kListsOutgrown;
+        if (j == stages) stage_moved(system, last_);
+        const bool last = j == stages;
+        const Evaluation evaluation = system.evaluate(Gas::kOn, last ? Stiffness::kBound : Stiffness::kSkip);
+        gas_ = evaluation.gas;
+        if (last) stiffness_ = evaluation.stiffness;
+    }
+    return StagesEnd::kDone;
+}
+
+/// 0.8 (y_n - y_(n+1)) + 0.4 h (f_n + f_(n+1))   [Sommeijer98, section 3]
+template <int D>
+double Rkc2<D>::step_error(const System<D>& system, const GasExchange& gas, double h) const {
+    const Foam<D>& foam = system.foam;
+    const Rates<D>& rates = system.rates;
+    const bool exchange = system.model.exchanges_gas();
+    return error_norm<D>(system, options_.norm, [&](std::size_t i, double* ex, double& eq) {
+        for (std::size_t k = 0; k < D; ++k)
+            ex[k] = -0.8 * last_.position[k][i] + 0.4 * h * (foam.velocity[k][i] + rates.velocity[k][i]);
+        if (!exchange) return;
+        const double rate = gas.size_rate(rates.film[i], rates.weight[i], system.stage.inverse_radius[i]);
+        eq = -0.8 * last_.size[i] + 0.4 * h * (foam.size_rate[i] + rate);
+    });
+}
+
+template <int D>
+Step Rkc2<D>::step(System<D>& system, double longest) {
+    Step done;
+    evaluations_ = 0;
+    start_expansion_ = system.expansion();
+    if (start_expansion_ + 1.2 * expected_reach_ >= system.reach()) {
+        system.rebuild();
+        start_expansion_ = 0.0;
+    }
+    evaluate_first(system);
+    const double tolerance = options_.tolerance * (options_.relative_error ? system.mean_radius() : 1.0);
+    const double first_stiffness = stiffness_;
+
+    while (true) {
+        const double wanted = std::min(next_step_, options_.max_step);
+        double h = std::min(wanted, longest);
+        // 5 % on the bound for contacts that close during the step.
+        int stages = 1 + static_cast<int>(std::sqrt(1.0 + 1.54 * h * 1.05 * first_stiffness));
+        stages = std::max(stages, 2);
+        if (stages > kMostStages) {
+            stages = kMostStages;
+            h = (stages * stages - 1) / (1.54 * 1.05 * first_stiffness);
+        }
+        const StagesEnd end = run_stages(system, h, stages);
+        if (end == StagesEnd::kListsOutgrown) {
+            system.rebuild(2.0 * stage_reach_);
+            start_expansion_ = 0.0;
+            continue;
+        }
+        evaluations_ += stages;
+        if (end == StagesEnd::kTooFar) {
+            next_step_ = 0.25 * h;
+        } else {
+            done.error = step_error(system, gas_, h);
+            // An error that is infinite (or NaN) cuts the step to a tenth.
+            const double factor = 0.8 * std::cbrt(tolerance / std::max(done.error, 1e-30));
+            next_step_ = std::clamp(factor, 0.1, 5.0) * h;
+            if (done.error <= tolerance) {
+                // A step that was cut short to meet an output time says little about the longest possible one.
+                if (h < wanted) next_step_ = std::max(next_step_, wanted);
+                done.time = done.clock = h;
+                break;
+            }
+        }
+        ++done.rejections;
+        stiffness_ = first_stiffness;
+        if (next_step_ < 1e-12)
+            throw NumericalError(fmt::format("the time step fell below 1e-12 (error {} at tolerance {})", done.error,
+                                             tolerance));
+    }
+    expected_reach_ = stage_reach_;
+    accept_moved(system, last_);
+    system.keep_rates(gas_);
+    done.evaluations = evaluations_;
+    return done;
+}
+
+}  // namespace
+
+template <int D>
+std::unique_ptr<Integrator<D>> make_rkc2(const Options& options, System<D>&) {
+    return std::make_unique<Rkc2<D>>(options);
+}
+
+template std::unique_ptr<Integrator<2>> make_rkc2<2>(const Options&, System<2>&);
+template std::unique_ptr<Integrator<3>> make_rkc2<3>(const Options&, System<3>&);
+
+}  // namespace lamella::bubble

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lamella/solvers/bubble/domain.h"
+#include "lamella/solvers/bubble/foam.h"
+#include "lamella/solvers/bubble/liquid.h"
+#include "lamella/solvers/bubble/model.h"
+#include "lamella/solvers/bubble/options.h"
+#include "lamella/solvers/bubble/rates.h"
+
+namespace lamella::bubble {
+
+/// While the first packing relaxes the liquid is at rest and walls do not rub.
+enum class LiquidMotion { kAtRest, kAsGiven };
+
+/// The foam with what is needed to evaluate its rates: constants, neighbor lists, the stage being evaluated.
+///
+/// When lists are rebuilt, and how bubbles are stored, changes no bit of the state: lists only ever hold more pairs
+/// than touch, sums over a list go by id, sums over the foam are integers.
+template <int D>
+class System {
+public:
+    System(const Options& options, Domain& domain);
+
+    Foam<D> foam;
+    Model model;
+    Stage<D> stage;
+    Rates<D> rates;
+
+    /// Columns of an integrator that must follow when bubbles are reordered.
+    std::vector<Column*> attached;
+
+    const spatial::NeighborList<D>& neighbors() const { return neighbors_; }
+    Domain& domain() const { return *domain_; }
+    std::size_t length() const { return spatial::padded(foam.slots); }
+
+    /// Takes the box, its walls, and the liquid's motion for the evaluations to come. Call after changing the box.
+    void prepare(LiquidMotion motion);
+
+    /// Drops vanished bubbles and builds new neighbor lists for the current state. The lists stay valid while no
+    /// bubble's |dx| + dR passes reach(), at least `least_reach`.
+    void rebuild(double least_reach = 0.0);
+    double reach() const { return 0.5 * skin_; }
+    std::int64_t rebuilds() const { return rebuilds_; }
+
+    /// Largest |dx| + dR of any bubble between the last rebuild and the current state.
+    double expansion() const;
+
+    /// stage = the current state.
+    void stage_current();
+
+    /// rates = the right-hand side at `stage`.
+    Evaluation evaluate(Gas gas, Stiffness stiffness);
+
+    /// foam.velocity and foam.size_rate from `rates` and the exchange of an evaluation of the current state.
+    void keep_rates(const GasExchange& gas);
+
+    double mean_radius() const;
+    double total_size() const;
+
+private:
+    Options options_;
+    Domain* domain_;
+    Liquid<D> liquid_;
+    spatial::NeighborList<D> neighbors_;
+    Columns<D> built_position_;
+    Column built_radius_;
+    double skin_ = 0.0;
+    std::int64_t rebuilds_ = 0;
+};
+
+/// Radius and inverse radius of a stage's size q; 0 where the bubble had vanished before the step.
+template <int D>
+void set_radius(const Model& model, double size, bool alive, double& radius, double& inverse_radius) {
+    radius = alive ? Shape<D>::radius(size > model.floor_size ? size : model.floor_size) : 0.0;
+    inverse_radius = alive ? 1.0 / radius : 0.0;
+}
+
+}  // namespace lamella::bubble
