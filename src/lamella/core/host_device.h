@@ -6,3 +6,10 @@
 #else
 #define LAMELLA_HOST_DEVICE
 #endif
+
+/// For the small functions that a kernel is made of: eight lanes passed through memory would cost more than the work.
+#if defined(__GNUC__)
+#define LAMELLA_ALWAYS_INLINE inline __attribute__((always_inline))
+#else
+#define LAMELLA_ALWAYS_INLINE inline
+#endif

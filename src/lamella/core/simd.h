@@ -20,33 +20,33 @@ namespace stdx = std::experimental;
 using Simd = stdx::simd<double, stdx::simd_abi::deduce_t<double, kLanes>>;
 static_assert(Simd::size() == kLanes);
 
-inline Simd load_lanes(const double* p) {
+LAMELLA_ALWAYS_INLINE Simd load_lanes(const double* p) {
     Simd v;
     v.copy_from(p, stdx::element_aligned);
     return v;
 }
-inline void store_lanes(const Simd& v, double* p) { v.copy_to(p, stdx::element_aligned); }
-inline Simd gather_lanes(const double* p, const std::uint32_t* index) {
+LAMELLA_ALWAYS_INLINE void store_lanes(const Simd& v, double* p) { v.copy_to(p, stdx::element_aligned); }
+LAMELLA_ALWAYS_INLINE Simd gather_lanes(const double* p, const std::uint32_t* index) {
     return Simd([&](auto lane) { return p[index[lane]]; });
 }
 
-LAMELLA_HOST_DEVICE inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
-inline Simd select(const Simd::mask_type& condition, const Simd& yes, const Simd& no) {
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double select(bool condition, double yes, double no) { return condition ? yes : no; }
+LAMELLA_ALWAYS_INLINE Simd select(const Simd::mask_type& condition, const Simd& yes, const Simd& no) {
     Simd result = no;
     stdx::where(condition, result) = yes;
     return result;
 }
 
-LAMELLA_HOST_DEVICE inline double square_root(double a) { return std::sqrt(a); }
-inline Simd square_root(const Simd& a) { return stdx::sqrt(a); }
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double square_root(double a) { return std::sqrt(a); }
+LAMELLA_ALWAYS_INLINE Simd square_root(const Simd& a) { return stdx::sqrt(a); }
 
-LAMELLA_HOST_DEVICE inline double larger(double a, double b) { return a > b ? a : b; }
-inline Simd larger(const Simd& a, const Simd& b) { return stdx::max(a, b); }
-LAMELLA_HOST_DEVICE inline double smaller(double a, double b) { return b < a ? b : a; }
-inline Simd smaller(const Simd& a, const Simd& b) { return stdx::min(a, b); }
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double larger(double a, double b) { return a > b ? a : b; }
+LAMELLA_ALWAYS_INLINE Simd larger(const Simd& a, const Simd& b) { return stdx::max(a, b); }
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double smaller(double a, double b) { return b < a ? b : a; }
+LAMELLA_ALWAYS_INLINE Simd smaller(const Simd& a, const Simd& b) { return stdx::min(a, b); }
 
 /// Nearest whole number, ties to even.
-LAMELLA_HOST_DEVICE inline double nearest(double a) { return std::nearbyint(a); }
-inline Simd nearest(const Simd& a) { return stdx::nearbyint(a); }
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double nearest(double a) { return std::nearbyint(a); }
+LAMELLA_ALWAYS_INLINE Simd nearest(const Simd& a) { return stdx::nearbyint(a); }
 
 }  // namespace lamella

@@ -12,7 +12,7 @@ CellGrid<D>::CellGrid(const PeriodicBox<D>& box,
                       std::array<const double*, D> position,
                       std::size_t count,
                       double edge)
-    : box_(box) {
+    : box_(box), inverse_lengths_(box.inverse_lengths()) {
     // More cells than points only cost memory: in a nearly empty box the cells grow.
     const double least_edge = std::pow(box.volume() / static_cast<double>(count + 1), 1.0 / D);
     edge = std::max(edge, least_edge);
@@ -40,7 +40,7 @@ CellGrid<D>::CellGrid(const PeriodicBox<D>& box,
 
 template <int D>
 std::size_t CellGrid<D>::cell_of(std::size_t axis, double x) const {
-    if (box_.periodic[axis]) x -= box_.lengths[axis] * std::floor(x / box_.lengths[axis]);
+    x -= box_.lengths[axis] * std::floor(x * inverse_lengths_[axis]);
     const double c = std::floor(x * cells_per_length_[axis]);
     return static_cast<std::size_t>(std::clamp(c, 0.0, static_cast<double>(cells_[axis] - 1)));
 }
@@ -48,7 +48,7 @@ std::size_t CellGrid<D>::cell_of(std::size_t axis, double x) const {
 template <int D>
 typename CellGrid<D>::CellRange CellGrid<D>::range(std::size_t axis, double center, double reach) const {
     const double n = static_cast<double>(cells_[axis]);
-    if (box_.periodic[axis]) center -= box_.lengths[axis] * std::floor(center / box_.lengths[axis]);
+    center -= box_.lengths[axis] * std::floor(center * inverse_lengths_[axis]);
     // Rounding may put a point one cell off where it sits on a border; 1e-9 of a cell covers that.
     const double low = std::floor((center - reach) * cells_per_length_[axis] - 1e-9);
     const double high = std::floor((center + reach) * cells_per_length_[axis] + 1e-9);
@@ -58,7 +58,7 @@ typename CellGrid<D>::CellRange CellGrid<D>::range(std::size_t axis, double cent
         return {static_cast<std::size_t>(first), static_cast<std::size_t>(last - first) + 1};
     }
     if (high - low + 1.0 >= n) return {0, cells_[axis]};
-    const double first = low - n * std::floor(low / n);
+    const double first = low < 0.0 ? low + n : low >= n ? low - n : low;
     return {static_cast<std::size_t>(first), static_cast<std::size_t>(high - low) + 1};
 }
 

@@ -62,6 +62,7 @@ private:
     PeriodicBox<D> box_;
     std::array<std::size_t, D> cells_;
     Vec<D> cells_per_length_;
+    Vec<D> inverse_lengths_;  // 0 on axes with walls
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> start_;  // of each cell in order_, and the end
 };

@@ -44,24 +44,36 @@ public:
         for (std::size_t k = 0; k < D; ++k) center[k] = balls_.position[k][i];
         const double own_reach = balls_.radius[i] + skin_;
         grid_.for_each_range(center, reach, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t j = begin; j < end; ++j) {
-                const double limit = own_reach + balls_.radius[j];
-                if (images_) {
-                    visit_images(center, i, j, limit, found);
-                    continue;
+            if (images_) {
+                for (std::size_t j = begin; j < end; ++j)
+                    visit_images(center, i, j, own_reach + balls_.radius[j], found);
+                return;
+            }
+            for (std::size_t first = begin; first < end; first += kLanes) {
+                auto near = within_reach(center, own_reach, first);
+                while (stdx::any_of(near)) {
+                    const int lane = stdx::find_first_set(near);
+                    near[lane] = false;
+                    const std::size_t j = first + static_cast<std::size_t>(lane);
+                    if (j < end && j != i) found(j, std::array<std::int8_t, D>{});
                 }
-                double squared = 0.0;
-                for (std::size_t k = 0; k < D; ++k) {
-                    const double s = center[k] - balls_.position[k][j];
-                    const double nearest_image = s - box_.lengths[k] * std::nearbyint(s * inverse_[k]);
-                    squared += nearest_image * nearest_image;
-                }
-                if (squared < limit * limit && j != i) found(j, std::array<std::int8_t, D>{});
             }
         });
     }
 
 private:
+    /// Which of the balls first .. first + 7 have their nearest image within reach.
+    auto within_reach(const Vec<D>& center, double own_reach, std::size_t first) const {
+        Simd squared = 0.0;
+        for (std::size_t k = 0; k < D; ++k) {
+            Simd s = center[k] - load_lanes(&balls_.position[k][first]);
+            s -= box_.lengths[k] * nearest(s * inverse_[k]);
+            squared += s * s;
+        }
+        const Simd limit = own_reach + load_lanes(&balls_.radius[first]);
+        return squared < limit * limit;
+    }
+
     template <class Found>
     void visit_images(const Vec<D>& center, std::size_t i, std::size_t j, double limit, Found&& found) const {
         std::array<int, D> low{};
@@ -112,22 +124,33 @@ struct BlockLists {
 
 template <int D>
 void sort_by_id(Entry<D>* begin, Entry<D>* end) {
-    std::sort(begin, end, [](const Entry<D>& a, const Entry<D>& b) {
+    const auto before = [](const Entry<D>& a, const Entry<D>& b) {
         return a.id != b.id ? a.id < b.id : a.image < b.image;
-    });
+    };
+    for (Entry<D>* next = begin; next != end; ++next) {  // lists are short: insertion
+        const Entry<D> entry = *next;
+        Entry<D>* place = next;
+        for (; place != begin && before(entry, place[-1]); --place) *place = place[-1];
+        *place = entry;
+    }
 }
 
-/// Final places of the balls: windows of the cell order sorted by list length, longest first.
+/// Final places of the balls: windows of the cell order sorted by list length, longest first (a counting sort;
+/// lists too long for it share its last bin, which only costs gaps).
 template <int D>
 std::vector<std::uint32_t> window_order(const std::vector<BlockLists<D>>& blocks, std::size_t count) {
+    constexpr std::uint32_t kBins = 64;
     std::vector<std::uint32_t> order(count);
-    std::iota(order.begin(), order.end(), 0U);
     parallel_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
         const auto& length = blocks[begin / kBlock].length;
-        for (std::size_t w = begin; w < end; w += kWindow)
-            std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(w),
-                             order.begin() + static_cast<std::ptrdiff_t>(std::min(end, w + kWindow)),
-                             [&](std::uint32_t a, std::uint32_t b) { return length[a - begin] > length[b - begin]; });
+        const auto bin = [&](std::size_t i) { return kBins - 1 - std::min(length[i - begin], kBins - 1); };
+        for (std::size_t w = begin; w < end; w += kWindow) {
+            const std::size_t window_end = std::min(end, w + kWindow);
+            std::array<std::size_t, kBins + 1> place{};
+            for (std::size_t i = w; i < window_end; ++i) ++place[bin(i) + 1];
+            std::partial_sum(place.begin(), place.end(), place.begin());
+            for (std::size_t i = w; i < window_end; ++i) order[w + place[bin(i)]++] = static_cast<std::uint32_t>(i);
+        }
     });
     return order;
 }
@@ -195,11 +218,11 @@ NeighborSearch<D> find_neighbors(const PeriodicBox<D>& box,
     for (std::size_t k = 0; k < D; ++k)
         images = images || (box.periodic[k] && box.lengths[k] <= 2.0 * (2.0 * largest + skin));
 
-    const CellGrid<D> grid(box, position, count, 1.5 * mean);
+    const CellGrid<D> grid(box, position, count, 2.5 * mean);
     const auto cell_order = grid.order();
     SortedBalls<D> balls;
-    for (auto& column : balls.position) column.resize(count);
-    balls.radius.resize(count);
+    for (auto& column : balls.position) column.resize(count + kLanes);  // the last group may be read past its end
+    balls.radius.resize(count + kLanes);
     parallel_for(count, [&](std::size_t i) {
         for (std::size_t k = 0; k < D; ++k) balls.position[k][i] = position[k][cell_order[i]];
         balls.radius[i] = radius[cell_order[i]];

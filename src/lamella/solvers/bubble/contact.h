@@ -16,19 +16,19 @@ struct Overlap {
     Real inverse_product;    ///< 1/(S d): one division serves every use
 
     /// @param squared  d^2
-    LAMELLA_HOST_DEVICE Overlap(const Real& squared, const Real& radius_i, const Real& radius_j)
+    LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE Overlap(const Real& squared, const Real& radius_i, const Real& radius_j)
         : sum(radius_i + radius_j),
           distance(square_root(larger(squared, Real(1e-300)))),
           inverse_product(Real(1.0) / larger(sum * distance, Real(1e-300))) {}
 
-    LAMELLA_HOST_DEVICE Real depth() const { return sum - distance; }
-    LAMELLA_HOST_DEVICE Real inverse_distance() const { return sum * inverse_product; }
-    LAMELLA_HOST_DEVICE Real inverse_sum() const { return distance * inverse_product; }
+    LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE Real depth() const { return sum - distance; }
+    LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE Real inverse_distance() const { return sum * inverse_product; }
+    LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE Real inverse_sum() const { return distance * inverse_product; }
 };
 
 /// True where the bubbles touch: d < S and both still exist.
 template <class Real>
-LAMELLA_HOST_DEVICE auto touching(const Real& squared, const Real& radius_i, const Real& radius_j) {
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE auto touching(const Real& squared, const Real& radius_i, const Real& radius_j) {
     const Real sum = radius_i + radius_j;
     return squared < sum * sum && radius_i * radius_j > Real(0.0);
 }
@@ -37,7 +37,7 @@ LAMELLA_HOST_DEVICE auto touching(const Real& squared, const Real& radius_i, con
 ///   v_ij = (F_0/mu_0) (1/d - 1/S) (x_i - x_j)      [Lankinen20, eq. 2.15]
 /// Coincident centers have no direction: the separation, and so the velocity, is zero.
 template <class Real>
-LAMELLA_HOST_DEVICE Real push(const Overlap<Real>& o) {
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE Real push(const Overlap<Real>& o) {
     return o.depth() * o.inverse_product;
 }
 
@@ -47,7 +47,7 @@ LAMELLA_HOST_DEVICE Real push(const Overlap<Real>& o) {
 /// R_s^2, the lens is as wide as the smaller bubble: h = R_s, which is continuous (the published code jumps).
 /// Exactly symmetric in i and j, so that the two bubbles exchange the same gas.
 template <int D, class Real>
-LAMELLA_HOST_DEVICE Real film_size(const Real& squared,
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE Real film_size(const Real& squared,
                                    const Overlap<Real>& o,
                                    const Real& radius_i,
                                    const Real& radius_j) {
@@ -66,7 +66,7 @@ LAMELLA_HOST_DEVICE Real film_size(const Real& squared,
 
 /// Potential of the contact force per sigma_0 <R_in>: U_ij = (S - d)^2 / (2 S), so that F = -grad U (eq. 2.13).
 template <class Real>
-LAMELLA_HOST_DEVICE Real contact_energy(const Overlap<Real>& o) {
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE Real contact_energy(const Overlap<Real>& o) {
     return Real(0.5) * o.depth() * o.depth() * o.inverse_sum();
 }
 

@@ -18,14 +18,14 @@ struct StiffnessMatrix {
     static constexpr std::size_t kEntries = D * (D + 1) / 2;
     Simd entry[kEntries] = {};
 
-    void add(const Simd (&unit)[D], const Simd& weight) {
+    LAMELLA_ALWAYS_INLINE void add(const Simd (&unit)[D], const Simd& weight) {
         std::size_t e = 0;
         for (std::size_t a = 0; a < D; ++a)
             for (std::size_t b = 0; b <= a; ++b) entry[e++] += weight * unit[a] * unit[b];
     }
 
     /// Exact in 2D; in 3D the largest row sum of absolute values, an upper bound.
-    Simd largest_eigenvalue() const {
+    LAMELLA_ALWAYS_INLINE Simd largest_eigenvalue() const {
         if constexpr (D == 2) {
             const Simd mean = 0.5 * (entry[0] + entry[2]);
             const Simd half = 0.5 * (entry[0] - entry[2]);

@@ -37,7 +37,7 @@ struct Shape<2> {
     LAMELLA_HOST_DEVICE static double radius(double q) { return std::sqrt(q); }
     LAMELLA_HOST_DEVICE static double size(double r) { return r * r; }
     template <class Real>
-    LAMELLA_HOST_DEVICE static Real surface(const Real& r) {
+    LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE static Real surface(const Real& r) {
         return r * kSurface;
     }
 };
@@ -49,7 +49,7 @@ struct Shape<3> {
     LAMELLA_HOST_DEVICE static double radius(double q) { return cube_root(q); }
     LAMELLA_HOST_DEVICE static double size(double r) { return r * r * r; }
     template <class Real>
-    LAMELLA_HOST_DEVICE static Real surface(const Real& r) {
+    LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE static Real surface(const Real& r) {
         return r * r * kSurface;
     }
 };
