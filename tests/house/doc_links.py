@@ -16,9 +16,8 @@ SKIPPED = {"build", "runs", "node_modules", ".git"}
 
 
 def without_code(text):
-    """The same lines with fenced blocks and `code` blanked: what stands there is an example, not a link."""
-    blank = lambda m: re.sub(r"[^\n]", " ", m.group())
-    return re.sub(r"`[^`\n]+`", blank, re.sub(r"^```.*?^```", blank, text, flags=re.S | re.M))
+    """The same lines with fenced blocks, `code` and <!-- comments --> blanked: what stands there is no link."""
+    return re.sub(r"^```.*?^```|`[^`\n]+`|<!--.*?-->", lambda m: re.sub(r"[^\n]", " ", m.group()), text, flags=re.S | re.M)
 
 
 def anchors(text):
@@ -67,7 +66,7 @@ def self_test():
         (tree / "docs").mkdir()
         (tree / "docs" / "references.bib").write_text("@article{Known99,\n}\n", encoding="utf-8")
         (tree / "docs" / "a.md").write_text(
-            "# A title, here\n[up](../b.md) [self](#a-title-here) [web](https://example.org) `[no](x.md)` [Known99]\n"
+            "# A title, here\n[up](../b.md) [self](#a-title-here) [web](https://example.org) `[no](x.md)` [Known99]\n<!-- [no](z.md) -->\n"
             "```\n[code](y.md)\n```\n", encoding="utf-8")
         (tree / "b.md").write_text(
             "[gone](docs/gone.md)\n![picture](p.png)\n[heading](docs/a.md#nothing)\n[Unknown01, eq. 3]\n"
