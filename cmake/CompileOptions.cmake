@@ -10,6 +10,9 @@ function(lamella_compile_options target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wshadow -Wconversion
     -ffp-contract=off -fno-math-errno -fno-trapping-math)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-restrict)  # gcc bug 105651: false alarms inside std::string
+  endif()
   if(LAMELLA_NATIVE)
     target_compile_options(${target} PRIVATE -march=native)
   endif()
