@@ -60,7 +60,7 @@ struct Options {
 class Solver final : public sim::Solver {
 public:
     explicit Solver(const sim::SolverInput& input)
-        : options(sim::read_options<Options>(input.options)), directory(input.directory), seed(input.seed) {}
+        : options(sim::read_options<Options>(input.options)), seed(input.seed) {}
 
     void start(const sim::StartContext&) override {}
     sim::StepReport advance(double time_limit) override {
@@ -75,7 +75,6 @@ public:
     void load(sim::StateReader&) override {}
 
     Options options;
-    std::string directory;
     std::uint64_t seed;
 
 private:
