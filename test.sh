@@ -64,7 +64,7 @@ fuzz() {
     for target in "$folder"/bin/fuzz/*_fuzz; do
         [ -x "$target" ] || die "no fuzz target was built"
         name=$(basename "$target")
-        seeds=$root/tests/fuzz/corpus/$name
+        seeds=$root/tests/fuzz/corpus/${name%_fuzz}
         mkdir -p "$folder/corpus/$name"
         say "$name"
         "$target" -max_total_time=$fuzz_seconds -rss_limit_mb=2048 -timeout=10 -print_final_stats=1 \
