@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+# shellcheck source=scripts/common.sh
 . "$root/scripts/common.sh"
 
 usage() {
@@ -23,14 +24,14 @@ while [ $# -gt 0 ]; do
         -h | --help) usage && exit 0 ;;
         --no-install) install=no ;;
         --build-dir)
-            [ $# -ge 2 ] || die "--build-dir needs a folder"
+            [ $# -ge 2 ] || misused "--build-dir needs a folder"
             build=$(absolute "$2")
             shift
             ;;
         --build-dir=*) build=$(absolute "${1#*=}") ;;
-        -*) usage >&2 && die "unknown option $1" ;;
+        -*) misused "unknown option $1" ;;
         *)
-            [ -z "$scene" ] || die "one scene at a time: $scene or $1?"
+            [ -z "$scene" ] || misused "one scene at a time: $scene or $1?"
             scene=$1
             ;;
     esac

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+# shellcheck source=scripts/common.sh
 . "$root/scripts/common.sh"
 
 usage() {
@@ -25,12 +26,12 @@ while [ $# -gt 0 ]; do
         --full) full=yes ;;
         --no-install) install=no ;;
         --build-dir)
-            [ $# -ge 2 ] || die "--build-dir needs a folder"
+            [ $# -ge 2 ] || misused "--build-dir needs a folder"
             build=$(absolute "$2")
             shift
             ;;
         --build-dir=*) build=$(absolute "${1#*=}") ;;
-        *) usage >&2 && die "unknown option $1" ;;
+        *) misused "unknown option $1" ;;
     esac
     shift
 done
@@ -56,7 +57,7 @@ sanitized() {
 
 # Each fuzz target for a minute, from its seeds; what it finds lies in findings/ of the build folder.
 fuzz() {
-    local folder=$beside/fuzz target name seeds
+    local folder=$beside/fuzz target name inputs
     say "Fuzzing, $fuzz_seconds s per target"
     configure fuzz "$folder"
     build_all "$folder"
@@ -64,11 +65,12 @@ fuzz() {
     for target in "$folder"/bin/fuzz/*_fuzz; do
         [ -x "$target" ] || die "no fuzz target was built"
         name=$(basename "$target")
-        seeds=$root/tests/fuzz/corpus/${name%_fuzz}
-        mkdir -p "$folder/corpus/$name"
+        inputs=("$folder/corpus/$name" "$root/tests/fuzz/corpus/${name%_fuzz}")  # new ones go to the first
+        mkdir -p "${inputs[0]}"
+        [ -d "${inputs[1]}" ] || unset 'inputs[1]'
         say "$name"
         "$target" -max_total_time=$fuzz_seconds -rss_limit_mb=2048 -timeout=10 -print_final_stats=1 \
-            -artifact_prefix="$folder/findings/$name-" "$folder/corpus/$name" $([ -d "$seeds" ] && echo "$seeds") \
+            -artifact_prefix="$folder/findings/$name-" "${inputs[@]}" \
             >"$folder/$name.log" 2>&1 || {
             tail -50 "$folder/$name.log" >&2
             die "$name found something; the input is in $folder/findings, the report in $folder/$name.log"
@@ -78,7 +80,8 @@ fuzz() {
 }
 
 if [ "$install" = yes ]; then
-    install_packages build test $([ "$full" = yes ] && echo full)
+    install_packages build test
+    [ "$full" = no ] || install_packages full
 fi
 
 say "Building in $build"

@@ -1,4 +1,6 @@
+# shellcheck shell=bash
 # What run.sh and test.sh share; sourced, not run. Needs `root`: the top of the source tree.
+: "${root:?}"
 
 say() { printf '\n==> %s\n' "$*" >&2; }
 die() {
@@ -6,7 +8,15 @@ die() {
     exit 1
 }
 
+# Used wrongly: how it is meant, and exit code 2.
+misused() {
+    usage >&2
+    printf '%s: %s\n' "$(basename "$0")" "$*" >&2
+    exit 2
+}
+
 jobs=$(nproc)
+export jobs
 
 # needed_packages KIND...: the packages that scripts/debian-packages.txt lists under these words.
 needed_packages() {
@@ -32,19 +42,20 @@ install_packages() {
     if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
         die "this is no Debian system: install the libraries of scripts/debian-packages.txt yourself and pass --no-install"
     fi
-    local missing as_root=()
-    missing=$(missing_packages "$@" | tr '\n' ' ')
-    [ -n "$missing" ] || return 0
-    local command="apt-get install -y --no-install-recommends $missing"
+    local missing apt_install as_root=()
+    mapfile -t missing < <(missing_packages "$@")
+    [ ${#missing[@]} -gt 0 ] || return 0
+    apt_install=(env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}")
     if [ "$(id -u)" -ne 0 ]; then
-        command -v sudo >/dev/null || die "packages are missing and there is no sudo; as root run: $command"
+        command -v sudo >/dev/null ||
+            die "packages are missing and there is no sudo; as root run: apt-get install -y ${missing[*]}"
         as_root=(sudo)
     fi
-    say "Installing $missing"
+    say "Installing ${missing[*]}"
     # The package lists of a fresh machine may be missing or old: fetch them and try once more.
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive $command ||
-        { "${as_root[@]}" apt-get update && "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive $command; } ||
-        die "apt could not install the packages (see above); install them yourself and pass --no-install: $missing"
+    "${as_root[@]}" "${apt_install[@]}" ||
+        { "${as_root[@]}" apt-get update && "${as_root[@]}" "${apt_install[@]}"; } ||
+        die "apt could not install the packages (see above); install them yourself and pass --no-install: ${missing[*]}"
 }
 
 # configure PRESET FOLDER [CMAKE OPTION...]
