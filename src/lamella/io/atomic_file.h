@@ -1,12 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace lamella::io {
 
-/// Writes a whole file under a temporary name in the same folder, syncs it, and renames it into place.
+/// Writes a whole file under a temporary name in the same folder (`<path>.tmp`), syncs it, and renames it into
+/// place. A file that is there already is replaced; a folder or device in its place is an error.
 /// @throws IoError  naming the path and the system's reason; nothing is left behind
 void write_file_atomically(const std::filesystem::path& path, std::string_view contents);
 
@@ -14,7 +16,9 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
 /// @throws IoError  it cannot be read   @throws InputError  it is larger, or a directory
 std::string read_file(const std::filesystem::path& path, std::size_t limit = std::size_t{1} << 30);
 
-/// The shortest text that reads back as the same double; "nan" and "inf" as such.
+/// The shortest text that reads back as the same double; "nan", "inf" and "-inf" as such.
 std::string shortest_text(double value);
+/// The same, appended to `out`.
+void append_shortest(std::string& out, double value);
 
 }  // namespace lamella::io

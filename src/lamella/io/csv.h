@@ -4,17 +4,20 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lamella::io {
 
-/// Appends rows to a CSV file, each flushed to the system before append() returns.
+/// Appends rows to a CSV file, each handed to the system before append() returns. A row that cannot be written
+/// whole (full disk) is cut off again, so the file always ends with a complete row.
 class CsvWriter {
 public:
     /// Starts a new file with this header (truncates an old one). Header entries look like "total_area[m^2]".
+    /// @throws IoError
     CsvWriter(std::filesystem::path path, const std::vector<std::string>& header);
     /// Continues a file at `offset` bytes (what came later, written after the checkpoint, is cut off).
-    /// @throws InputError  the file is shorter than that
+    /// @throws InputError  the file is shorter than that, or no row ends there   @throws IoError
     CsvWriter(std::filesystem::path path, std::uint64_t offset);
     ~CsvWriter();
     CsvWriter(CsvWriter&&) noexcept;
@@ -22,8 +25,8 @@ public:
 
     /// Numbers in their shortest exact text. @throws IoError
     void append(const std::vector<double>& row);
-    void append_text(const std::vector<std::string>& row);  ///< quoted where needed
-    /// Waits until the rows are on the disk; bytes written so far.
+    void append_text(const std::vector<std::string>& row);  ///< quoted where needed. @throws IoError
+    /// Waits until the rows are on the disk; bytes written so far. @throws IoError
     std::uint64_t sync();
 
 private:
@@ -41,7 +44,10 @@ struct CsvTable {
     /// Index of the column whose header is `name` or starts with "name["; -1 when there is none.
     int column(const std::string& name) const;
 };
+/// Every row has one number per header entry; "nan" and "inf" are numbers, blank lines are skipped.
 /// @throws IoError, InputError (file:line)
 CsvTable read_csv(const std::filesystem::path& path);
+/// The same from text (tests, fuzzing); `name` stands for the file in messages.
+CsvTable parse_csv(std::string_view text, const std::string& name);
 
 }  // namespace lamella::io
