@@ -1,27 +1,43 @@
 #pragma once
 
+#include "lamella/sim/frame.h"
+
 #include <filesystem>
 #include <iosfwd>
 #include <string>
+#include <string_view>
 #include <vector>
-
-#include "lamella/sim/frame.h"
 
 namespace lamella::io {
 
 /// Writes a frame as VTK PolyData (.vtp, zlib-compressed, appended base64): triangles as polygons, points as
 /// vertices, every field under its name with its unit as the array's UNITS_LABEL, the frame's scalars, time, step,
 /// solver name and box as field data. Atomic: the name appears when the file is whole.
-/// @throws IoError  it cannot be written
+///
+/// A frame with both a surface and points becomes one list of points, surface vertices first; a field that only one
+/// of the two has is padded with NaN (integers: -1) for the other. Region labels are the cell data region_back and
+/// region_front; the cells of points come first there and hold -1. Same frame, same bytes, on any number of threads.
+/// @throws IoError     it cannot be written
+/// @throws InputError  the frame contradicts itself: lengths that do not fit together, a name twice, a name that the
+///                     format needs (radius, region_back, region_front; scalars: TimeValue, step, solver, ...), text
+///                     that is not UTF-8 on one line, an integer field with other values than whole numbers up to 2^53
 void write_vtp(const std::filesystem::path& path, const sim::Frame& frame);
 
-/// Reads back what write_vtp wrote. @throws IoError, InputError (names the file and what is wrong in it)
+/// Reads back what write_vtp wrote, to the last bit. @throws IoError, InputError (the file and what is wrong in it)
 sim::Frame read_vtp(const std::filesystem::path& path);
+/// The same from memory (tests, fuzzing); `name` stands for the file in messages.
+sim::Frame parse_vtp(std::string_view contents, const std::string& name);
+
+// The writers below throw what write_vtp throws; IoError when the stream fails. XYZ and CSV hold points only, and
+// refuse a frame that has a surface and no points.
 
 /// Extended XYZ (OVITO, ASE): one line per point, the box as Lattice, every field a named column.
+/// `velocity` is called `velo`, as these programs expect; scalars of the frame, time and units stand in the second
+/// line. A flat box gets a slab as thick as the largest disc, as the format cannot hold a side of length 0.
 void write_extended_xyz(std::ostream& out, const sim::Frame& frame);
 
 /// Binary PLY: positions, radius and fields as vertex properties, triangles as faces with their region labels.
+/// Surface and points share one list as in write_vtp. Integer fields beyond 32 bit become doubles (PLY has no more).
 void write_ply(std::ostream& out, const sim::Frame& frame);
 
 /// A table with one row per point: x, y, z, radius, then every field; header names carry units: "velocity_x[m/s]".
@@ -42,9 +58,11 @@ struct FrameEntry {
     std::string file;  ///< relative to the collection
 };
 
-/// Writes a ParaView collection. Atomic.
+/// Writes a ParaView collection. Atomic. @throws IoError, InputError (a file name that XML cannot hold)
 void write_pvd(const std::filesystem::path& path, const std::vector<FrameEntry>& entries);
 /// @throws IoError, InputError
 std::vector<FrameEntry> read_pvd(const std::filesystem::path& path);
+/// The same from text (tests, fuzzing); `name` stands for the file in messages.
+std::vector<FrameEntry> parse_pvd(std::string_view text, const std::string& name);
 
 }  // namespace lamella::io
