@@ -1,0 +1,14 @@
+#include "lamella/io/frame_files.h"
+
+namespace lamella::io {
+
+const std::vector<FrameFormat>& frame_formats() {
+    static const std::vector<FrameFormat> formats{
+        {"ply", ".ply", "surfaces and points with their fields, binary: Blender, MeshLab, Houdini", write_ply},
+        {"xyz", ".xyz", "points with box and fields, extended XYZ text: OVITO, ASE", write_extended_xyz},
+        {"csv", ".csv", "a table with one row per point: spreadsheets, pandas, gnuplot", write_points_csv},
+    };
+    return formats;
+}
+
+}  // namespace lamella::io
