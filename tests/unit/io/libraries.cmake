@@ -1,0 +1,2 @@
+# The tests forge checkpoints and look at them with plain HDF5.
+target_link_libraries(${name} PRIVATE hdf5::hdf5 ZLIB::ZLIB)
