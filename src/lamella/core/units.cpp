@@ -67,6 +67,13 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
+/// The text in quotes, on one line and not too long.
+std::string quoted(std::string_view text) {
+    std::string shown;
+    for (const char c : text.substr(0, 60)) shown += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+    return fmt::format("\"{}{}\"", shown, text.size() > 60 ? "..." : "");
+}
+
 std::optional<Unit> find_unit(std::string_view name) {
     // A whole name goes before prefix + name: "min" is a minute, "Pa" is no poise.
     for (const NamedUnit& known : kUnits)
@@ -88,19 +95,18 @@ std::optional<Unit> find_unit(std::string_view name) {
         {"meter", "m"},    {"metre", "m"},  {"meters", "m"}, {"second", "s"},   {"seconds", "s"}, {"sec", "s"},
         {"minute", "min"}, {"hour", "h"},   {"gram", "g"},   {"newton", "N"},   {"pascal", "Pa"}, {"kelvin", "K"},
         {"micron", "um"},  {"degree", "deg"}, {"degrees", "deg"}, {"hertz", "Hz"}, {"liter", "L"}, {"mole", "mol"}};
-    const std::string quoted(name.substr(0, 40));
     for (const auto& [word, unit] : kSpelledOut)
         if (edit_distance(word, name) == 0)
-            throw InputError(fmt::format("unknown unit \"{}\"; did you mean \"{}\"?", quoted, unit));
+            throw InputError(fmt::format("unknown unit {}; did you mean \"{}\"?", quoted(name), unit));
     std::vector<std::string> candidates;
     for (const NamedUnit& known : kUnits) candidates.emplace_back(known.name);
     for (const std::string_view prefixed : {"kg", "cm", "mm", "um", "nm", "km", "ms", "mN", "kPa", "mPa", "mL"})
         candidates.emplace_back(prefixed);
     if (const auto near = nearest_word(name, candidates))
-        throw InputError(fmt::format("unknown unit \"{}\"; did you mean \"{}\"?", quoted, *near));
-    throw InputError(fmt::format("unknown unit \"{}\"; known are m, g, s, K, mol, N, Pa, J, W, Hz, L, min, h, rad, deg"
+        throw InputError(fmt::format("unknown unit {}; did you mean \"{}\"?", quoted(name), *near));
+    throw InputError(fmt::format("unknown unit {}; known are m, g, s, K, mol, N, Pa, J, W, Hz, L, min, h, rad, deg"
                                  " and more, with SI prefixes",
-                                 quoted));
+                                 quoted(name)));
 }
 
 Unit power(const Unit& unit, int n) {
@@ -194,7 +200,7 @@ private:
     }
 
     [[noreturn]] void refuse() const {
-        throw InputError(fmt::format("\"{}\" is no unit; write e.g. \"kg/m^3\"", text_.substr(0, 40)));
+        throw InputError(fmt::format("{} is no unit; write e.g. \"kg/m^3\"", quoted(text_)));
     }
 
     std::string_view text_;
@@ -231,12 +237,6 @@ std::optional<SplitNumber> split_number(std::string_view text) {
     }
     split.rest = trimmed(text.substr(at));
     return split;
-}
-
-std::string quoted(std::string_view text) {
-    std::string shown;
-    for (const char c : text.substr(0, 60)) shown += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-    return fmt::format("\"{}{}\"", shown, text.size() > 60 ? "..." : "");
 }
 
 /// The number before the unit, times 10^exponent, rounded once.

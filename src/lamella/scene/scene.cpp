@@ -1,12 +1,8 @@
 #include "lamella/scene/scene.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <map>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,6 +11,7 @@
 #include "lamella/core/error.h"
 #include "lamella/core/nearest_word.h"
 #include "lamella/scene/detail/overrides.h"
+#include "lamella/scene/detail/scene_file.h"
 #include "lamella/scene/detail/toml_reader.h"
 #include "lamella/scene/detail/toml_writer.h"
 #include "lamella/sim/read_options.h"
@@ -145,7 +142,10 @@ detail::CommentOf comments_from(const std::vector<sim::OptionInfo>& infos) {
     std::map<std::string, std::string, std::less<>> comments;
     for (const sim::OptionInfo& info : infos) {
         const bool unit = !info.doc.unit.empty() && info.doc.unit != "-" && info.doc.unit != "path";
-        comments[info.name] = unit ? fmt::format("[{}] {}", info.doc.unit, info.doc.text) : info.doc.text;
+        std::string& comment = comments[info.name];
+        if (unit) comment = fmt::format("[{}] ", info.doc.unit);
+        if (info.type == "word") comment = info.allowed + "; ";
+        comment += info.doc.text;
     }
     return [comments = std::move(comments)](std::string_view name) {
         const auto it = comments.find(name);
@@ -158,26 +158,12 @@ std::string resolved_table(std::string_view name, const Options& options) {
     return detail::toml_text(name, sim::resolve_options(options), comments_from(sim::describe_options<Options>()));
 }
 
-std::string read_file(const std::filesystem::path& path) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored))
-        throw InputError({path.string(), 0, 0}, "is a directory; a scene is a TOML file");
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw IoError(fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
-    // One byte more than allowed tells that there is more, also for pipes and devices, which have no size.
-    std::string text(detail::kLargestScene + 1, '\0');
-    file.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (file.bad()) throw IoError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-    text.resize(static_cast<std::size_t>(file.gcount()));
-    return text;
-}
-
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& path,
                  const std::vector<std::string>& overrides,
                  const sim::SolverRegistry& registry) {
-    return parse_scene(read_file(path), path.string(), overrides, registry);
+    return parse_scene(detail::read_scene_file(path), path.string(), overrides, registry);
 }
 
 Scene parse_scene(std::string_view text,

@@ -16,7 +16,13 @@ struct Node {
     using Array = std::vector<Node>;
     using Table = std::vector<std::pair<std::string, Node>>;  ///< in the order of the file
 
-    std::variant<std::monostate, bool, std::int64_t, double, std::string, Array, Table> value;
+    using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, Array, Table>;
+
+    Node() = default;
+    Node(Value v, SourceLocation place = {}, std::string name = {})
+        : value(std::move(v)), where(std::move(place)), path(std::move(name)) {}
+
+    Value value;
     SourceLocation where;
     std::string path;  ///< "bubble.flow.velocity"; "" for the whole file
 

@@ -197,7 +197,7 @@ void OptionReader::collect_unknown() {
     const Node::Table* entries = table_.table();
     if (entries == nullptr) return;
     for (const auto& [key, node] : *entries)
-        if (std::find(names_.begin(), names_.end(), key) == names_.end()) unknown_.push_back({&node, key, names_});
+        if (std::find(names_.begin(), names_.end(), key) == names_.end()) unknown_.push_back({&node, key, table_.path, names_});
 }
 
 void OptionReader::finish(std::span<const OptionInfo> all) {
@@ -207,10 +207,11 @@ void OptionReader::finish(std::span<const OptionInfo> all) {
         return a.node->where.line < b.node->where.line;
     });
     // A right name at the wrong place helps more than a similar one at the right place.
+    const auto at = [](const std::string& table, const std::string& name) { return table.empty() ? name : table + "." + name; };
     std::optional<std::string> meant;
     for (const OptionInfo& info : all)
-        if (!meant && last_part(info.name) == first->key) meant = table_.path.empty() ? info.name : table_.path + "." + info.name;
-    if (!meant) meant = nearest_word(first->key, first->known);
+        if (!meant && last_part(info.name) == first->key) meant = at(table_.path, info.name);
+    if (const auto near = nearest_word(first->key, first->known); !meant && near) meant = at(first->table, *near);
     const std::string help = meant ? fmt::format("did you mean {}?", *meant)
                                    : fmt::format("known are {}", fmt::join(first->known, ", "));
     throw InputError(first->node->where, fmt::format("{} is not an option; {}", first->node->path, help));

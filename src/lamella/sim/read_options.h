@@ -74,6 +74,7 @@ private:
     struct UnknownKey {
         const Node* node;
         std::string key;
+        std::string table;               ///< path of the table that it stands in
         std::vector<std::string> known;  ///< the names at its place
     };
 

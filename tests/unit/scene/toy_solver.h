@@ -10,6 +10,7 @@
 #include "lamella/core/error.h"
 #include "lamella/sim/read_options.h"
 #include "lamella/sim/registry.h"
+#include "lamella/solvers/bubble/options.h"
 
 namespace lamella::toy {
 
@@ -90,11 +91,28 @@ inline sim::SolverEntry entry(std::string name, std::string time_unit) {
             .resolve = [](const sim::Node& node) { return sim::resolve_options(sim::read_options<Options>(node)); }};
 }
 
+/// The options of the bubble solver without the solver.
+inline sim::SolverEntry bubble_entry() {
+    return {.name = "bubble",
+            .summary = "options only",
+            .time_unit = "-",
+            .create =
+                [](const sim::SolverInput& input) {
+                    sim::read_options<bubble::Options>(input.options);
+                    return std::make_unique<Solver>(sim::SolverInput{});
+                },
+            .describe = [] { return sim::describe_options<bubble::Options>(); },
+            .resolve = [](const sim::Node& node) {
+                return sim::resolve_options(sim::read_options<bubble::Options>(node));
+            }};
+}
+
 /// "toy" counts time in seconds, "still" has none.
 inline sim::SolverRegistry registry() {
     sim::SolverRegistry solvers;
     solvers.add(entry("toy", "s"));
     solvers.add(entry("still", "-"));
+    solvers.add(bubble_entry());
     return solvers;
 }
 

@@ -150,7 +150,7 @@ InputError explained(const toml::parse_error& problem, const std::string& name) 
 
 sim::Node parse(std::string_view text, const std::string& name) {
     if (text.size() > kLargestScene)
-        throw InputError({name, 0, 0}, fmt::format("has {} bytes; a scene has at most {} MiB", text.size(), kLargestScene >> 20));
+        throw InputError({name, 0, 0}, fmt::format("is larger than {} MiB; that is no scene", kLargestScene >> 20));
     DepthCheck(text, name).run();
     try {
         return Converter(name).table(toml::parse(text, name), {name, 1, 1}, "");

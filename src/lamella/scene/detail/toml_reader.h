@@ -9,7 +9,7 @@
 namespace lamella::scene::detail {
 
 /// Text larger than this is no scene.
-inline constexpr std::size_t kLargestScene = std::size_t{4} << 20;
+inline constexpr std::size_t kLargestScene = std::size_t{1} << 20;
 
 /// The tables and values of a TOML text, each with its line, entries in the order of the text.
 ///
