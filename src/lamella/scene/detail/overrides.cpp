@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kLongestKey = 200;
 
 std::vector<std::string> parts_of(std::string_view key, const SourceLocation& where) {
+    while (key.ends_with(' ')) key.remove_suffix(1);  // "seed = 3" in quotes
     std::vector<std::string> parts(1);
     for (const char c : key) {
         if (c == '.') parts.emplace_back();

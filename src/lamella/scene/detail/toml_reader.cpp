@@ -6,9 +6,17 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include "lamella/core/error.h"
+
+// toml++ asserts things that malformed text breaks ("[" at the end of a line), and in release builds, that of its shared
+// library included, it hands these to the optimizer as promises. Compiled here, without them, its checks decide alone.
+#undef TOML_HEADER_ONLY
+#undef TOML_SHARED_LIB
+#undef NDEBUG
+#define TOML_HEADER_ONLY 1
+#define TOML_ASSERT(condition) static_cast<void>(0)
+#include <toml++/toml.h>
 
 namespace lamella::scene::detail {
 namespace {
