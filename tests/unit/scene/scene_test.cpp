@@ -152,17 +152,6 @@ TEST(Scene, SaysWhichSolversThereAre) {
     expect_error("solver = 'toy'\ntoy = 3", "foam.toml:2: toy = 3 is an integer; a table is expected");
 }
 
-TEST(Scene, GivesTheSolverItsFolderAndSeed) {
-    const auto directory = [](const std::string& name) {
-        const Scene scene = parse_scene("solver = 'toy'\nseed = 5", name, {}, toy::registry());
-        const auto solver = create_solver(scene, toy::registry());
-        EXPECT_EQ(dynamic_cast<const toy::Solver&>(*solver).seed, 5u);
-        return dynamic_cast<const toy::Solver&>(*solver).directory;
-    };
-    EXPECT_EQ(directory("foam.toml"), ".");
-    EXPECT_EQ(directory("some/where/foam.toml"), "some/where");
-}
-
 TEST(ResolvedScene, HasFileNamesThatDoNotDependOnWhereItStands) {
     const Scene scene = parse_scene("solver = 'toy'\n[toy]\nfile = '../a.csv'", "/some/where/foam.toml", {}, toy::registry());
     const Scene again = parse_scene(resolved_toml(scene, toy::registry()), "/else/run.toml", {}, toy::registry());
@@ -240,6 +229,12 @@ TEST(Scene, LivesThroughNestingInEveryForm) {
     EXPECT_NO_THROW(parse("title = \"" + repeated("a.").substr(0, 1000) + "\" # " + repeated("[") + "\nsolver = 'toy'"));
     EXPECT_NO_THROW(parse("title = \"\"\"" + repeated("[\n").substr(0, 1000) + "\"\"\"\"\"\nsolver = 'toy'"));
     EXPECT_NO_THROW(parse("title = '''" + repeated("{\n").substr(0, 1000) + "'''''\nsolver = 'toy'"));
+}
+
+TEST(Scene, AcceptsLettersOfEveryAlphabet) {
+    EXPECT_EQ(parse("title = \"\"\"a\\\n  \u00e9t\u00e9\"\"\" # \u00f8\nsolver = 'toy'").title, "a\u00e9t\u00e9");
+    expect_error("title = \u201cFoam\u201d\nsolver = 'toy'", "foam.toml:1: ");
+    expect_error("solver = 'toy'\u00e9", "foam.toml:1: ");
 }
 
 TEST(Scene, AcceptsAByteOrderMarkAndWindowsLineEnds) {

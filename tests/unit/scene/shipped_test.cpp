@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "lamella/core/error.h"
 #include "lamella/scene/scene.h"
-#include "toy_solver.h"
 
 namespace lamella::scene {
 namespace {
@@ -57,7 +57,7 @@ TEST_F(ShippedScenes, AllHaveATitleAndAreAccepted) {
     for (const ShippedScene& shipped : shipped_scenes()) {
         EXPECT_NE(shipped.title.substr(0, 1), "(") << shipped.name << shipped.title;
         if (!shipped.name.starts_with("bubble/")) continue;
-        const Scene scene = load_scene(shipped.path, {}, toy::registry());
+        const Scene scene = load_scene(shipped.path, {}, all_solvers());
         EXPECT_EQ(scene.title, shipped.title);
         EXPECT_TRUE(scene.notes.empty());
         ++seen;
