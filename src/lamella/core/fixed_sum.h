@@ -82,11 +82,13 @@ FixedSum fixed_sum(std::size_t count, double bound, Term&& term) {
         [](FixedSum a, const FixedSum& b) { return a += b; });
 }
 
-/// The same without a known bound: a first pass finds the largest |term|.
+/// The same without a known bound: a first pass finds the largest |term|. The scale follows from that term alone, so
+/// terms that are zero (vacant slots) change no bit; what is dropped is below 2^-60 of the largest term, per term.
 template <class Term>
 double exact_sum(std::size_t count, Term&& term) {
     const double largest = parallel_max(count, 0.0, [&](std::size_t i) { return std::abs(term(i)); });
-    return fixed_sum(count, largest * static_cast<double>(count), term).value();
+    constexpr double kMostTerms = 2147483648.0;  // 2^31
+    return fixed_sum(count, largest * kMostTerms, term).value();
 }
 
 }  // namespace lamella

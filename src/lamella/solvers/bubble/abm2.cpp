@@ -29,12 +29,13 @@ class Abm2 final : public Integrator<D> {
 public:
     Abm2(const Options& options, System<D>& system)
         : options_(options.integrator), compat_(options.compat), next_step_(options.integrator.initial_step) {
-        system.attached = {&previous_.size};
+        system.attached = system.attached_size_rates = {&previous_.size};
         for (auto& column : previous_.position) system.attached.push_back(&column);
     }
 
+    void begin(System<D>& system) override;
     Step step(System<D>& system, double longest) override;
-    /// The history stays, as published: the pushes of a bubble that vanished leave it within two steps.
+    /// The history stays, as published: the push of a bubble that vanished leaves it within two steps.
     void foam_changed() override {}
     double next_step() const override { return next_step_; }
 
@@ -42,7 +43,6 @@ public:
     void load(sim::StateReader& in, System<D>& system) override;
 
 private:
-    void begin_history(System<D>& system);
     bool adapt(double error, double tolerance, double h);
 
     IntegratorOptions options_;
@@ -57,7 +57,7 @@ private:
 
 /// f_n at the start; without a history the first predictor is Euler's.
 template <int D>
-void Abm2<D>::begin_history(System<D>& system) {
+void Abm2<D>::begin(System<D>& system) {
     system.stage_current();
     const Evaluation first = system.evaluate(Gas::kOn, Stiffness::kSkip);
     system.keep_rates(first.gas);
@@ -99,10 +99,6 @@ Step Abm2<D>::step(System<D>& system, double longest) {
         predicted_size_rate_.assign(system.length(), 0.0);
     };
     size_scratch();
-    if (last_step_ == 0.0) {
-        begin_history(system);
-        ++done.evaluations;
-    }
     const double tolerance = options_.tolerance * (options_.relative_error ? system.mean_radius() : 1.0);
 
     while (true) {
@@ -187,9 +183,8 @@ Step Abm2<D>::step(System<D>& system, double longest) {
 template <int D>
 void Abm2<D>::save(sim::StateWriter& out, const std::vector<std::uint32_t>& order) const {
     const auto write = [&](const std::string& name, const Column& column) {
-        std::vector<double> sorted(order.size(), 0.0);
-        if (last_step_ > 0.0)
-            for (std::size_t n = 0; n < order.size(); ++n) sorted[n] = column[order[n]];
+        std::vector<double> sorted(order.size());
+        for (std::size_t n = 0; n < order.size(); ++n) sorted[n] = column[order[n]];
         out.write(name, std::span<const double>(sorted));
     };
     out.write_value("integrator/next_step", next_step_);

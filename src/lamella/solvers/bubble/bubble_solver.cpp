@@ -125,10 +125,7 @@ void BubbleSolver<D>::start(const sim::StartContext& context) {
     s.prepare(LiquidMotion::kAsGiven);
     s.rebuild();
     make_integrator();
-    // Rates of the first state, so that the first frame shows them.
-    s.stage_current();
-    const Evaluation first = s.evaluate(Gas::kOn, Stiffness::kSkip);
-    s.keep_rates(first.gas);
+    integrator_->begin(s);
 }
 
 /// The state from which times, paths, displacements and means of the start count.

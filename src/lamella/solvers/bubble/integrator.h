@@ -23,6 +23,8 @@ class Integrator {
 public:
     virtual ~Integrator() = default;
 
+    /// Evaluates the rates of the first state. Without it (after load) the saved rates are used.
+    virtual void begin(System<D>& system) = 0;
     /// Takes one step of at most `longest`. @throws NumericalError  no step is small enough; the state is unchanged
     virtual Step step(System<D>& system, double longest) = 0;
     /// The foam changed between steps (bubbles vanished): rates must be evaluated anew.

@@ -38,7 +38,7 @@ public:
         evaluate(Stiffness::kBound);
         step_ = 0.1 * longest_step_;
     }
-    ~Fire() { system_.attached.clear(); }
+    ~Fire() { system_.attached.resize(system_.attached.size() - D); }
 
     void iterate() {
         const auto product = [&](const Columns<D>& a, const Columns<D>& b) {
@@ -78,9 +78,9 @@ public:
                 if (system_.foam.box.periodic[k]) x = wrapped(x, system_.foam.box.lengths[k], crossings);
             }
         });
-        const bool outgrown = system_.expansion() >= system_.reach();
-        if (outgrown) system_.rebuild();
-        evaluate(outgrown ? Stiffness::kBound : Stiffness::kSkip);
+        if (system_.expansion() >= system_.reach()) system_.rebuild();
+        // Anew now and then, but not with the lists: when those are built must not change the path.
+        evaluate(++iterations_ % kCheckInterval == 0 ? Stiffness::kBound : Stiffness::kSkip);
     }
 
     /// Mean |F_i| over mean |F_ij|, 0 when the foam does not jam.
@@ -117,6 +117,7 @@ private:
     double longest_step_ = 0.0;
     double mixing_ = kMixing;
     int downhill_ = 0;
+    int iterations_ = 0;
 };
 
 }  // namespace

@@ -11,6 +11,21 @@
 
 namespace lamella::bubble {
 
+namespace {
+
+/// What vanished bubbles lose or gain per time goes where their gas goes, so that rates keep adding up to zero.
+template <int D>
+void settle_rate(const Foam<D>& foam, const std::vector<std::uint32_t>& removed, double survivors, Column& rate) {
+    double lost = 0.0;
+    for (const std::uint32_t i : removed) {
+        lost += rate[i];
+        rate[i] = 0.0;
+    }
+    parallel_for(foam.slots, [&](std::size_t i) { rate[i] += lost * foam.size[i] / survivors; });
+}
+
+}  // namespace
+
 template <int D>
 std::vector<sim::Event> remove_vanished(System<D>& system, bool as_printed) {
     Foam<D>& foam = system.foam;
@@ -36,14 +51,18 @@ std::vector<sim::Event> remove_vanished(System<D>& system, bool as_printed) {
         sim::Event event{.time = 0.0, .kind = "remove", .position = {}, .detail = fmt::format("bubble {}", foam.id[i])};
         for (std::size_t k = 0; k < D; ++k) event.position[k] = foam.position[k][i];
         events.push_back(std::move(event));
-        foam.size[i] = foam.size_rate[i] = 0.0;
+        foam.size[i] = 0.0;
         for (std::size_t k = 0; k < D; ++k) foam.velocity[k][i] = 0.0;
         system.stage.radius[i] = 0.0;
-        for (Column* column : system.attached) (*column)[i] = 0.0;
     }
     foam.live -= removed.size();
 
-    const double share = excess / system.total_size();
+    const double survivors = system.total_size();
+    settle_rate(foam, removed, survivors, foam.size_rate);
+    for (Column* column : system.attached_size_rates)
+        if (!column->empty()) settle_rate(foam, removed, survivors, *column);
+
+    const double share = excess / survivors;
     const double factor = as_printed && share > 0.0 ? std::pow(1.0 + std::pow(share, 1.0 / D), D) : 1.0 + share;
     parallel_for(foam.slots, [&](std::size_t i) { foam.size[i] *= factor; });
     return events;

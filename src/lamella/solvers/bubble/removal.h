@@ -12,6 +12,7 @@ namespace lamella::bubble {
 ///   q_i <- q_i (1 + a),  a = sum_removed q / sum_surviving q
 /// (the thesis prints R_i + R_i a^(1/d), which creates gas: compat.removal). A removed bubble may have passed zero
 /// within its last step; its slightly negative q is what was over-paid, and is settled here.
+/// Size rates of earlier times are shared out likewise.
 /// @returns  an event per removed bubble, by id
 /// @throws NumericalError  nothing would be left
 template <int D>

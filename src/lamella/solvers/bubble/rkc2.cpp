@@ -65,6 +65,7 @@ class Rkc2 final : public Integrator<D> {
 public:
     explicit Rkc2(const Options& options) : options_(options.integrator), next_step_(options.integrator.initial_step) {}
 
+    void begin(System<D>& system) override { evaluate_first(system); }
     Step step(System<D>& system, double longest) override;
     void foam_changed() override { rates_current_ = false; }
     double next_step() const override { return next_step_; }

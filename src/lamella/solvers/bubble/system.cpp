@@ -56,7 +56,8 @@ void System<D>::rebuild(double least_reach) {
 
     const std::size_t length = spatial::padded(kept.size());
     Foam<D>::for_each_column(foam, [&](const std::string&, auto& column) { reorder(column, search.order, length); });
-    for (Column* column : attached) reorder(*column, search.order, length);
+    for (Column* column : attached)
+        if (!column->empty()) reorder(*column, search.order, length);
     foam.slots = foam.live = kept.size();
     stage.resize(length);
     rates.resize(length);

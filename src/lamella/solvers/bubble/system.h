@@ -29,8 +29,10 @@ public:
     Stage<D> stage;
     Rates<D> rates;
 
-    /// Columns of an integrator that must follow when bubbles are reordered.
+    /// Columns of an integrator that must follow when bubbles are reordered; empty ones are not in use.
     std::vector<Column*> attached;
+    /// Those of them that are earlier size rates: they must keep adding up to zero when bubbles vanish.
+    std::vector<Column*> attached_size_rates;
 
     const spatial::NeighborList<D>& neighbors() const { return neighbors_; }
     Domain& domain() const { return *domain_; }
