@@ -24,6 +24,16 @@ struct Control {
 constexpr Control kThesis{1.9, 0.5, 1.0, 0.1, false};
 constexpr Control kCubble{1.269, 0.37, 0.45, 10.0, true};
 
+enum class Reach {
+    kInLists,
+    kBeyondLists,  ///< a bubble left the reach of the neighbor lists: build new ones and repeat the same step
+    kTooFar,       ///< a bubble jumped out of its neighborhood: the step must be shorter
+};
+struct Reached {
+    Reach how;
+    double distance;  ///< largest |dx| + dR
+};
+
 template <int D>
 class Abm2 final : public Integrator<D> {
 public:
@@ -44,6 +54,8 @@ public:
 
 private:
     bool adapt(double error, double tolerance, double h);
+    template <class Fill>
+    static Reached fill(const System<D>& system, const Increment<D>& increment, double expansion, Fill&& of_bubble);
 
     IntegratorOptions options_;
     CompatOptions compat_;
@@ -83,6 +95,24 @@ bool Abm2<D>::adapt(double error, double tolerance, double h) {
     return accepted;
 }
 
+/// Fills an increment bubble by bubble, and tells how far it leads. Lists are only asked about where the state may go:
+/// whether a step is too long must not depend on them.
+template <int D>
+template <class Fill>
+Reached Abm2<D>::fill(const System<D>& system, const Increment<D>& increment, double expansion, Fill&& of_bubble) {
+    const double reach = system.domain().largest(parallel_max(system.foam.slots, 0.0, [&](std::size_t i) {
+        if (!system.foam.alive(i)) return 0.0;
+        of_bubble(i);
+        double squared = 0.0;
+        for (std::size_t k = 0; k < D; ++k) squared += increment.position[k][i] * increment.position[k][i];
+        const double size = std::max(system.foam.size[i] + increment.size[i], system.model.floor_size);
+        const double growth = std::max(increment.size[i], 0.0) / (D == 2 ? std::sqrt(size) : std::cbrt(size * size));
+        return std::sqrt(squared) + growth;
+    }));
+    if (!(reach < farthest_move(system))) return {Reach::kTooFar, reach};
+    return {expansion + reach < system.reach() ? Reach::kInLists : Reach::kBeyondLists, reach};
+}
+
 template <int D>
 Step Abm2<D>::step(System<D>& system, double longest) {
     Step done;
@@ -108,50 +138,41 @@ Step Abm2<D>::step(System<D>& system, double longest) {
         const double ratio = last_step_ == 0.0 || fixed_weights ? 1.0 : h / last_step_;
 
         // Predict: y^ = y_n + h ((1 + w/2) f_n - (w/2) f_(n-1)), w = h/h_prev
-        parallel_for(foam.slots, [&](std::size_t i) {
+        const double now = h * (1.0 + 0.5 * ratio);
+        const double before = h * 0.5 * ratio;
+        const auto predict = [&](double rate, double previous) { return now * rate - before * previous; };
+        Reached reached = fill(system, predicted_, expansion, [&](std::size_t i) {
             for (std::size_t k = 0; k < D; ++k)
-                predicted_.position[k][i] =
-                    h * ((1.0 + 0.5 * ratio) * foam.velocity[k][i] - 0.5 * ratio * previous_.position[k][i]);
-            if (exchange)
-                predicted_.size[i] = h * ((1.0 + 0.5 * ratio) * foam.size_rate[i] - 0.5 * ratio * previous_.size[i]);
+                predicted_.position[k][i] = predict(foam.velocity[k][i], previous_.position[k][i]);
+            if (exchange) predicted_.size[i] = predict(foam.size_rate[i], previous_.size[i]);
         });
-        stage_moved(system, predicted_);
-        const GasExchange gas = system.evaluate(Gas::kOn, Stiffness::kSkip).gas;
 
         // Correct: y_(n+1) = y_n + h (f^ + f_n)/2
-        const double reach = system.domain().largest(parallel_max(foam.slots, 0.0, [&](std::size_t i) {
-            double squared_predicted = 0.0;
-            double squared_corrected = 0.0;
-            for (std::size_t k = 0; k < D; ++k) {
-                corrected_.position[k][i] = 0.5 * h * (system.rates.velocity[k][i] + foam.velocity[k][i]);
-                squared_predicted += predicted_.position[k][i] * predicted_.position[k][i];
-                squared_corrected += corrected_.position[k][i] * corrected_.position[k][i];
-            }
-            if (exchange) {
+        if (reached.how == Reach::kInLists) {
+            stage_moved(system, predicted_);
+            const GasExchange gas = system.evaluate(Gas::kOn, Stiffness::kSkip).gas;
+            reached = fill(system, corrected_, expansion, [&](std::size_t i) {
+                for (std::size_t k = 0; k < D; ++k)
+                    corrected_.position[k][i] = 0.5 * h * (system.rates.velocity[k][i] + foam.velocity[k][i]);
+                if (!exchange) return;
                 predicted_size_rate_[i] =
                     gas.size_rate(system.rates.film[i], system.rates.weight[i], system.stage.inverse_radius[i]);
                 corrected_.size[i] = 0.5 * h * (predicted_size_rate_[i] + foam.size_rate[i]);
-            }
-            const double growth = std::max({predicted_.size[i], corrected_.size[i], 0.0}) *
-                                  std::pow(system.stage.inverse_radius[i], D - 1);
-            return std::sqrt(std::max(squared_predicted, squared_corrected)) + growth;
-        }));
-        const double farthest =
-            0.5 * std::pow(foam.box.volume() / static_cast<double>(foam.live), 1.0 / D);
-        if (reach < farthest && expansion + reach >= system.reach()) {
-            system.rebuild(2.0 * reach);
+            });
+        }
+        if (reached.how == Reach::kBeyondLists) {
+            system.rebuild(2.0 * reached.distance);
             size_scratch();
             expansion = 0.0;
             continue;
         }
         ++done.evaluations;
-        done.error = reach < farthest
-                         ? error_norm<D>(system, options_.norm, [&](std::size_t i, double* ex, double& eq) {
-                               for (std::size_t k = 0; k < D; ++k)
-                                   ex[k] = predicted_.position[k][i] - corrected_.position[k][i];
-                               eq = predicted_.size[i] - corrected_.size[i];
-                           })
-                         : std::numeric_limits<double>::infinity();
+        done.error = std::numeric_limits<double>::infinity();
+        if (reached.how == Reach::kInLists)
+            done.error = error_norm<D>(system, options_.norm, [&](std::size_t i, double* ex, double& eq) {
+                for (std::size_t k = 0; k < D; ++k) ex[k] = predicted_.position[k][i] - corrected_.position[k][i];
+                eq = predicted_.size[i] - corrected_.size[i];
+            });
         if (adapt(done.error, tolerance, h)) {
             if (h < wanted && !fixed_weights) next_step_ = std::max(next_step_, wanted);
             done.time = h;

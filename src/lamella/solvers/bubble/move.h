@@ -40,6 +40,13 @@ inline double wrapped(double x, double length, std::int32_t& wraps) {
     return x;
 }
 
+/// Half the mean spacing of the bubbles. A bubble that jumps further in one step has left its neighborhood, and no
+/// error estimate would notice where it lands.
+template <int D>
+double farthest_move(const System<D>& system) {
+    return 0.5 * std::pow(system.foam.box.volume() / static_cast<double>(system.foam.live), 1.0 / D);
+}
+
 /// stage = current state + increment, positions wrapped into the box.
 template <int D>
 void stage_moved(System<D>& system, const Increment<D>& increment);

@@ -183,8 +183,7 @@ double Rkc2<D>::advance_stage(System<D>& system, const StageWeights& w, double h
 template <int D>
 StagesEnd Rkc2<D>::run_stages(System<D>& system, double h, int stages) {
     const std::vector<StageWeights> weights = stage_weights(stages);
-    // A bubble that jumps by half its spacing has left its neighborhood: no error estimate would catch where it lands.
-    const double farthest = 0.5 * std::pow(system.foam.box.volume() / static_cast<double>(system.foam.live), 1.0 / D);
+    const double farthest = farthest_move(system);
     stage_reach_ = 0.0;
     last_.assign_zero(system.length());  // d_0, which stage 2 reads
     before_.resize(system.length());
