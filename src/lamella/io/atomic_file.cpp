@@ -54,7 +54,7 @@ void append_shortest(std::string& out, double value) {
         out += "nan";  // to_chars would show the sign bit, which means nothing
         return;
     }
-    std::array<char, 32> text;
+    std::array<char, 32> text{};
     const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
     out.append(text.data(), end);
 }

@@ -21,7 +21,7 @@ class CheckpointWriter : public sim::StateWriter {
 public:
     /// @param kind  solver name, stored and checked when read
     /// @throws IoError  the file cannot be created
-    CheckpointWriter(std::filesystem::path path, std::string kind);
+    CheckpointWriter(std::filesystem::path path, const std::string& kind);
     ~CheckpointWriter() override;  ///< without commit(): removes the temporary file
 
     using StateWriter::write;

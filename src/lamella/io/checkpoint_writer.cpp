@@ -31,20 +31,25 @@ struct Image {
     Image& operator=(const Image&) = delete;
     ~Image() { std::free(bytes); }
 
+    /// There is one buffer at any time, so HDF5's own pointer to it need not be looked at.
+    void* grow(std::size_t wanted) {
+        void* const grown = std::realloc(bytes, wanted);
+        if (grown == nullptr) return nullptr;
+        bytes = static_cast<char*>(grown);
+        size = wanted;
+        return grown;
+    }
+
     static void* allocate(std::size_t size, H5FD_file_image_op_t, void* image) {
-        return resize(nullptr, size, H5FD_FILE_IMAGE_OP_FILE_RESIZE, image);
+        return static_cast<Image*>(image)->grow(size);
     }
     static void* copy(void* to, const void* from, std::size_t size, H5FD_file_image_op_t, void*) {
         return std::memcpy(to, from, size);
     }
-    static void* resize(void* old, std::size_t size, H5FD_file_image_op_t, void* image) {
-        void* const bytes = std::realloc(old, size);
-        if (bytes == nullptr) return nullptr;
-        static_cast<Image*>(image)->bytes = static_cast<char*>(bytes);
-        static_cast<Image*>(image)->size = size;
-        return bytes;
+    static void* resize(void*, std::size_t size, H5FD_file_image_op_t, void* image) {
+        return static_cast<Image*>(image)->grow(size);
     }
-    static herr_t release(void*, H5FD_file_image_op_t, void*) { return 0; }
+    static herr_t release(void*, H5FD_file_image_op_t, void*) { return 0; }  // the buffer stays ours
     static void* share(void* image) { return image; }
     static herr_t unshare(void*) { return 0; }
 
@@ -97,7 +102,9 @@ void CheckpointWriter::Impl::create_image() {
     check(H5Pset_file_image_callbacks(access.get(), &callbacks) >= 0);
     const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     check(H5Pset_userblock(creation.get(), detail::kSealSize) >= 0);
-    file = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
+    // HDF5 would first read a file that has this name. No file can be below a file.
+    const std::filesystem::path name = path / "image";
+    file = Hdf5Handle(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
     check(file);
     link_options = Hdf5Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     check(H5Pset_create_intermediate_group(link_options.get(), 1) >= 0);
@@ -150,7 +157,7 @@ void CheckpointWriter::Impl::write(std::string_view name, std::span<const Value>
     check(H5Dwrite(dataset.get(), Hdf5Type<Value>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
 }
 
-CheckpointWriter::CheckpointWriter(std::filesystem::path path, std::string kind)
+CheckpointWriter::CheckpointWriter(std::filesystem::path path, const std::string& kind)
     : impl_(std::make_unique<Impl>(std::move(path))) {
     const QuietHdf5 quiet;
     impl_->create_image();

@@ -17,15 +17,18 @@ namespace {
 constexpr double kLargestWhole = 9007199254740992.0;  // 2^53
 
 bool holds_whole_numbers(const std::vector<double>& values) {
-    return parallel_reduce(
-        values.size(), true,
+    constexpr int kYes = 1;  // not bool: the bits of a vector<bool> cannot be written from several threads
+    constexpr int kNo = 0;
+    const int whole_numbers = parallel_reduce(
+        values.size(), kYes,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                if (!(std::abs(values[i]) <= kLargestWhole) || values[i] != std::trunc(values[i])) return false;
+                if (!(std::abs(values[i]) <= kLargestWhole) || values[i] != std::trunc(values[i])) return kNo;
             }
-            return true;
+            return kYes;
         },
-        [](bool a, bool b) { return a && b; });
+        [](int a, int b) { return a & b; });
+    return whole_numbers == kYes;
 }
 
 void check_name(const std::string& name, const std::string& unit, std::set<std::string>& used) {
