@@ -12,7 +12,7 @@ from urllib.parse import unquote
 
 LINK = re.compile(r"!?\[[^\]]*\]\(\s*<?([^)\s>]+)>?[^)]*\)")
 CITATION = re.compile(r"\[([A-Z][A-Za-z]+\d{2})(?:,[^\]]*)?\]")
-SKIPPED = {"build", "runs", "node_modules", ".git"}
+SKIPPED = {"build", "runs", "node_modules", ".git", "data", "corpus"}  # the last two: malformed on purpose
 
 
 def without_code(text):
