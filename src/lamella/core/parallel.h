@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 namespace lamella {
@@ -63,6 +64,7 @@ Value parallel_reduce(std::size_t count,
                       Partial&& partial,
                       Combine&& combine,
                       std::size_t block = kParallelBlock) {
+    static_assert(!std::is_same_v<Value, bool>, "neighbors in a vector<bool> share a byte: use int");
     std::vector<Value> parts((count + block - 1) / block, identity);
     parallel_blocks(count, block,
                     [&](std::size_t begin, std::size_t end) { parts[begin / block] = partial(begin, end); });

@@ -52,9 +52,9 @@ public:
             for (std::size_t first = begin; first < end; first += kLanes) {
                 auto near = within_reach(center, own_reach, first);
                 while (stdx::any_of(near)) {
-                    const int lane = stdx::find_first_set(near);
+                    const auto lane = static_cast<std::size_t>(stdx::find_first_set(near));
                     near[lane] = false;
-                    const std::size_t j = first + static_cast<std::size_t>(lane);
+                    const std::size_t j = first + lane;
                     if (j < end && j != i) found(j, std::array<std::int8_t, D>{});
                 }
             }
