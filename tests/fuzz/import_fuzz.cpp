@@ -1,15 +1,15 @@
-// The importer refuses whatever is wrong with InputError on one line, and what it accepts becomes a scene that the scene
-// reader accepts.
+// The importer refuses whatever is wrong with InputError on one line, and what it accepts becomes a scene that the
+// scene reader accepts.
 
+#include "lamella/core/error.h"
+#include "lamella/scene/import.h"
+#include "lamella/scene/scene.h"
+
+#include "../unit/scene/toy_solver.h"
 #include <cstdint>
 #include <cstdlib>
 #include <string>
 #include <string_view>
-
-#include "../unit/scene/toy_solver.h"
-#include "lamella/core/error.h"
-#include "lamella/scene/import.h"
-#include "lamella/scene/scene.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     std::string scene;

@@ -1,15 +1,15 @@
 // The scene reader refuses whatever is wrong with InputError on one line, and what it accepts it writes back so that it
 // reads the same again. The first line of the input, when it holds "--set ", is an override.
 
+#include "lamella/core/error.h"
+#include "lamella/scene/scene.h"
+
+#include "../unit/scene/toy_solver.h"
 #include <cstdint>
 #include <cstdlib>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "../unit/scene/toy_solver.h"
-#include "lamella/core/error.h"
-#include "lamella/scene/scene.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -1,5 +1,10 @@
 #include "lamella/core/units.h"
 
+#include "lamella/core/error.h"
+#include "lamella/core/nearest_word.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -8,11 +13,6 @@
 #include <optional>
 #include <utility>
 #include <vector>
-
-#include <fmt/format.h>
-
-#include "lamella/core/error.h"
-#include "lamella/core/nearest_word.h"
 
 namespace lamella {
 namespace {
@@ -51,7 +51,7 @@ constexpr NamedUnit kUnits[] = {
 };
 
 constexpr std::pair<std::string_view, int> kPrefixes[] = {
-    {"da", 1}, {"h", 2},  {"k", 3},  {"M", 6},      {"G", 9},       {"T", 12},  {"d", -1},
+    {"da", 1}, {"h", 2},  {"k", 3},  {"M", 6},       {"G", 9},       {"T", 12}, {"d", -1},
     {"c", -2}, {"m", -3}, {"u", -6}, {"\u00b5", -6}, {"\u03bc", -6}, {"n", -9}, {"p", -12}};
 
 // Powers beyond these are typing errors, and would overflow the sums below.
@@ -92,9 +92,9 @@ std::optional<Unit> find_unit(std::string_view name) {
 
 [[noreturn]] void refuse_unit(std::string_view name) {
     static constexpr std::pair<std::string_view, std::string_view> kSpelledOut[] = {
-        {"meter", "m"},    {"metre", "m"},  {"meters", "m"}, {"second", "s"},   {"seconds", "s"}, {"sec", "s"},
-        {"minute", "min"}, {"hour", "h"},   {"gram", "g"},   {"newton", "N"},   {"pascal", "Pa"}, {"kelvin", "K"},
-        {"micron", "um"},  {"degree", "deg"}, {"degrees", "deg"}, {"hertz", "Hz"}, {"liter", "L"}, {"mole", "mol"}};
+        {"meter", "m"},    {"metre", "m"},    {"meters", "m"},    {"second", "s"}, {"seconds", "s"}, {"sec", "s"},
+        {"minute", "min"}, {"hour", "h"},     {"gram", "g"},      {"newton", "N"}, {"pascal", "Pa"}, {"kelvin", "K"},
+        {"micron", "um"},  {"degree", "deg"}, {"degrees", "deg"}, {"hertz", "Hz"}, {"liter", "L"},   {"mole", "mol"}};
     for (const auto& [word, unit] : kSpelledOut)
         if (edit_distance(word, name) == 0)
             throw InputError(fmt::format("unknown unit {}; did you mean \"{}\"?", quoted(name), unit));
@@ -104,9 +104,10 @@ std::optional<Unit> find_unit(std::string_view name) {
         candidates.emplace_back(prefixed);
     if (const auto near = nearest_word(name, candidates))
         throw InputError(fmt::format("unknown unit {}; did you mean \"{}\"?", quoted(name), *near));
-    throw InputError(fmt::format("unknown unit {}; known are m, g, s, K, mol, N, Pa, J, W, Hz, L, min, h, rad, deg"
-                                 " and more, with SI prefixes",
-                                 quoted(name)));
+    throw InputError(
+        fmt::format("unknown unit {}; known are m, g, s, K, mol, N, Pa, J, W, Hz, L, min, h, rad, deg"
+                    " and more, with SI prefixes",
+                    quoted(name)));
 }
 
 Unit power(const Unit& unit, int n) {
@@ -118,10 +119,10 @@ Unit power(const Unit& unit, int n) {
 
 Unit product(const Unit& a, const Unit& b) {
     const Dimension &p = a.dimension, &q = b.dimension;
-    return {a.factor * b.factor,
-            a.exponent + b.exponent,
-            {p.length + q.length, p.mass + q.mass, p.time + q.time, p.temperature + q.temperature,
-             p.amount + q.amount}};
+    return {
+        a.factor * b.factor,
+        a.exponent + b.exponent,
+        {p.length + q.length, p.mass + q.mass, p.time + q.time, p.temperature + q.temperature, p.amount + q.amount}};
 }
 
 /// Recursive descent over "N/m", "kg m^2/s^2", "J/(mol K)", "1/s".
@@ -145,7 +146,8 @@ private:
             if (at_ == text_.size() || text_[at_] == ')') return all;
             // "/s" stands for "1/s": the number before it may have been taken as the value.
             const bool divide = text_[at_] == '/';
-            const bool sign = divide || text_[at_] == '*' || text_[at_] == '.' || text_.substr(at_).starts_with("\u00b7");
+            const bool sign =
+                divide || text_[at_] == '*' || text_[at_] == '.' || text_.substr(at_).starts_with("\u00b7");
             if (sign) {
                 if (first && !divide) refuse();
                 at_ += text_.substr(at_).starts_with("\u00b7") ? 2 : 1;
@@ -175,8 +177,9 @@ private:
 
     Unit name() {
         const std::size_t begin = at_;
-        while (at_ < text_.size() && !is_space(text_[at_]) && std::string_view("*/.^()").find(text_[at_]) == std::string_view::npos &&
-               !is_digit(text_[at_]) && text_[at_] != '-' && !text_.substr(at_).starts_with("\u00b7"))
+        while (at_ < text_.size() && !is_space(text_[at_]) &&
+               std::string_view("*/.^()").find(text_[at_]) == std::string_view::npos && !is_digit(text_[at_]) &&
+               text_[at_] != '-' && !text_.substr(at_).starts_with("\u00b7"))
             ++at_;
         const std::string_view word = text_.substr(begin, at_ - begin);
         if (word.empty()) refuse();
@@ -223,9 +226,12 @@ std::optional<SplitNumber> split_number(std::string_view text) {
     }
     bool any_digit = false;
     for (bool any_point = false; at < text.size(); ++at) {
-        if (is_digit(text[at])) any_digit = true;
-        else if (text[at] == '.' && !any_point) any_point = true;
-        else break;
+        if (is_digit(text[at]))
+            any_digit = true;
+        else if (text[at] == '.' && !any_point)
+            any_point = true;
+        else
+            break;
         split.mantissa += text[at];
     }
     if (!any_digit) return std::nullopt;
@@ -256,8 +262,7 @@ struct WrittenQuantity {
 
 WrittenQuantity split_quantity(std::string_view text) {
     const auto number = split_number(trimmed(text));
-    if (!number)
-        throw InputError(fmt::format("{} does not begin with a number; write e.g. \"5 cm\"", quoted(text)));
+    if (!number) throw InputError(fmt::format("{} does not begin with a number; write e.g. \"5 cm\"", quoted(text)));
     try {
         return {*number, parse_unit(number->rest)};
     } catch (const InputError& problem) {
@@ -266,8 +271,8 @@ WrittenQuantity split_quantity(std::string_view text) {
 }
 
 double finite_value(const WrittenQuantity& written, const Unit& target, std::string_view text) {
-    const double value = scaled_number(written.number, written.unit.exponent - target.exponent) *
-                         (written.unit.factor / target.factor);
+    const double value =
+        scaled_number(written.number, written.unit.exponent - target.exponent) * (written.unit.factor / target.factor);
     if (!std::isfinite(value)) throw InputError(fmt::format("{} is too large or too small", quoted(text)));
     return value;
 }

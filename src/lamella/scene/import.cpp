@@ -1,13 +1,5 @@
 #include "lamella/scene/import.h"
 
-#include <algorithm>
-#include <array>
-#include <map>
-#include <utility>
-#include <vector>
-
-#include <fmt/format.h>
-
 #include "lamella/core/error.h"
 #include "lamella/scene/detail/lenient_json.h"
 #include "lamella/scene/detail/scene_file.h"
@@ -16,6 +8,14 @@
 #include "lamella/scene/scene.h"
 #include "lamella/sim/read_options.h"
 #include "lamella/solvers/bubble/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+#include <vector>
 
 namespace lamella::scene {
 namespace {
@@ -149,14 +149,18 @@ struct Found {
 };
 
 void take(Found& found, const Target& target, const sim::Node& node) {
-    const std::string key = target.kind == Kind::kWall ? fmt::format("walls {}", target.name) : std::string(target.name);
+    const std::string key =
+        target.kind == Kind::kWall ? fmt::format("walls {}", target.name) : std::string(target.name);
     const auto [earlier, added] = found.sources.emplace(key, node);
     if (!added)
-        throw InputError(node.where, fmt::format("{} says again what {} said on line {}", node.path, earlier->second.path,
-                                                 earlier->second.where.line));
-    if (target.kind == Kind::kWall) found.walls[static_cast<std::size_t>(target.name[0] - '0')] = is_switched_on(node);
-    else if (target.kind == Kind::kImpose) found.flow = is_switched_on(node);
-    else set_dotted(target.kind == Kind::kBubble ? found.bubble : found.other, target.name, vector_from(node));
+        throw InputError(node.where, fmt::format("{} says again what {} said on line {}", node.path,
+                                                 earlier->second.path, earlier->second.where.line));
+    if (target.kind == Kind::kWall)
+        found.walls[static_cast<std::size_t>(target.name[0] - '0')] = is_switched_on(node);
+    else if (target.kind == Kind::kImpose)
+        found.flow = is_switched_on(node);
+    else
+        set_dotted(target.kind == Kind::kBubble ? found.bubble : found.other, target.name, vector_from(node));
 }
 
 /// The thesis explains every key in a member of its own: "kappaExpl".
@@ -210,7 +214,8 @@ std::string header(const Found& found, const OtherOptions& other, const std::str
                                    found.nested ? "cubble" : "the program of [Lankinen20] (its Listing A.1)");
     text += fmt::format(
         "# The problem is the same; the method is lamella's: rkc2, its errors below {} ({} = {}\n"
-        "# bounds another quantity, the predictor-corrector difference of abm2). To repeat the published program, with a\n"
+        "# bounds another quantity, the predictor-corrector difference of abm2). To repeat the published program, with "
+        "a\n"
         "# clock that runs ahead of the time it stands for, set\n"
         "#     bubble.integrator.method = \"abm2\"      bubble.integrator.tolerance = {}\n"
         "#     bubble.compat.clock = true             bubble.compat.step_control = \"{}\"\n"
@@ -218,16 +223,18 @@ std::string header(const Found& found, const OtherOptions& other, const std::str
         defaults.tolerance, found.sources.contains("tolerance") ? "errorTolerance" : "that program's default tolerance",
         other.tolerance, other.tolerance, found.nested ? "cubble" : "thesis");
     if (found.flow)
-        text += "# With a flow, that program also let each bubble drift with the mean velocity its neighbors had one step\n"
-                "# before: bubble.drag = \"neighbor_lagged\". Here the liquid alone drags.\n";
+        text +=
+            "# With a flow, that program also let each bubble drift with the mean velocity its neighbors had one step\n"
+            "# before: bubble.drag = \"neighbor_lagged\". Here the liquid alone drags.\n";
     if (!found.nested)
-        text += "# Dimension, walls and flow were chosen when that program was compiled; two dimensions, no walls and no flow\n"
-                "# are assumed. flow.kind = \"region\" turns the flow on.\n";
+        text +=
+            "# Dimension, walls and flow were chosen when that program was compiled; two dimensions, no walls and no "
+            "flow\n"
+            "# are assumed. flow.kind = \"region\" turns the flow on.\n";
     std::string unused;
     for (const auto& [target, why] :
          {std::pair{"relaxation_steps", "relaxation ends when the forces balance: start.force_tolerance"},
-          std::pair{"energy_change", "likewise"},
-          std::pair{"bubbles_per_cell", "cells follow from the largest bubble"},
+          std::pair{"energy_change", "likewise"}, std::pair{"bubbles_per_cell", "cells follow from the largest bubble"},
           std::pair{"file_prefix", "frames are named by their number"}})
         if (const auto it = found.sources.find(target); it != found.sources.end())
             unused += fmt::format("#     {} = {} ({})\n", it->second.path, sim::found_text(it->second), why);
@@ -236,7 +243,8 @@ std::string header(const Found& found, const OtherOptions& other, const std::str
     if (!found.unknown.empty()) text += "# WARNING: keys that are unknown and were left out:\n";
     for (std::size_t i = 0; i < std::min(found.unknown.size(), kMostListed); ++i)
         text += fmt::format("#     {}\n", found.unknown[i]);
-    if (found.unknown.size() > kMostListed) text += fmt::format("#     and {} more\n", found.unknown.size() - kMostListed);
+    if (found.unknown.size() > kMostListed)
+        text += fmt::format("#     and {} more\n", found.unknown.size() - kMostListed);
     return text;
 }
 
@@ -248,13 +256,15 @@ std::string import_foam_json(const std::filesystem::path& path) {
 
 std::string import_foam_json_text(std::string_view text, const std::string& name) {
     if (text.size() > detail::kLargestScene)
-        throw InputError({name, 0, 0}, fmt::format("is larger than {} MiB; that is no input file", detail::kLargestScene >> 20));
+        throw InputError({name, 0, 0},
+                         fmt::format("is larger than {} MiB; that is no input file", detail::kLargestScene >> 20));
     const sim::Node root = detail::read_lenient_json(text, name);
     Found found;
     collect(found, root, "");
     if (found.sources.empty())
-        throw InputError({name, 0, 0}, "has none of the keys of the thesis's program (phiTarget ...) or cubble"
-                                       " (constants.phi ...)");
+        throw InputError({name, 0, 0},
+                         "has none of the keys of the thesis's program (phiTarget ...) or cubble"
+                         " (constants.phi ...)");
     const auto other = sim::read_options<OtherOptions>(found.other);
     const sim::Node bubble = bubble_table(found);
 

@@ -1,20 +1,20 @@
 #include "lamella/scene/scene.h"
 
-#include <algorithm>
-#include <map>
-#include <optional>
-#include <utility>
-
-#include <fmt/format.h>
-
-#include "lamella/io/csv.h"
 #include "lamella/core/error.h"
 #include "lamella/core/nearest_word.h"
+#include "lamella/io/csv.h"
 #include "lamella/scene/detail/overrides.h"
 #include "lamella/scene/detail/scene_file.h"
 #include "lamella/scene/detail/toml_reader.h"
 #include "lamella/scene/detail/toml_writer.h"
 #include "lamella/sim/read_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
 
 namespace lamella::scene {
 namespace {
@@ -58,7 +58,9 @@ sim::Node table_of(const Scene& scene, std::string_view key) {
 }
 
 /// Where a key that stands outside of every table belongs, when a solver's option has that name.
-std::optional<std::string> option_named(const std::string& key, const Scene& scene, const sim::SolverRegistry& registry) {
+std::optional<std::string> option_named(const std::string& key,
+                                        const Scene& scene,
+                                        const sim::SolverRegistry& registry) {
     const sim::Node* chosen = scene.root.find("solver");
     const auto* name = chosen != nullptr ? std::get_if<std::string>(&chosen->value) : nullptr;
     const sim::SolverEntry* solver = name != nullptr ? registry.find(*name) : nullptr;
@@ -75,10 +77,9 @@ void refuse_unknown_keys(const Scene& scene, const sim::SolverRegistry& registry
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         std::optional<std::string> meant = option_named(key, scene, registry);
         if (!meant) meant = nearest_word(key, known);
-        throw InputError(node.where,
-                         fmt::format("{} is no part of a scene; {}", node.path,
-                                     meant ? fmt::format("did you mean {}?", *meant)
-                                           : fmt::format("known are {}", fmt::join(known, ", "))));
+        throw InputError(node.where, fmt::format("{} is no part of a scene; {}", node.path,
+                                                 meant ? fmt::format("did you mean {}?", *meant)
+                                                       : fmt::format("known are {}", fmt::join(known, ", "))));
     }
 }
 
@@ -109,8 +110,8 @@ void check_output_count(const Scene& scene, const char* name, double rate) {
     if (scene.time.end * rate <= kMostOutputs) return;
     const sim::Node* node = scene.root.find("time")->find(name);
     throw InputError(node != nullptr ? node->where : SourceLocation{scene.file, 0, 0},
-                     fmt::format("time.{} = {} gives {:.3g} outputs until time.end = {}; at most {:.0e} are allowed", name,
-                                 rate, scene.time.end * rate, scene.time.end, kMostOutputs));
+                     fmt::format("time.{} = {} gives {:.3g} outputs until time.end = {}; at most {:.0e} are allowed",
+                                 name, rate, scene.time.end * rate, scene.time.end, kMostOutputs));
 }
 
 std::string directory_of(const Scene& scene) {
@@ -132,7 +133,9 @@ sim::Node resolved_options(const Scene& scene, const sim::SolverEntry& solver) {
         }
         auto* text = node != nullptr ? std::get_if<std::string>(&node->value) : nullptr;
         if (text != nullptr && !text->empty())
-            *text = std::filesystem::absolute(std::filesystem::path(directory_of(scene)) / *text).lexically_normal().string();
+            *text = std::filesystem::absolute(std::filesystem::path(directory_of(scene)) / *text)
+                        .lexically_normal()
+                        .string();
     }
     return options;
 }
@@ -195,9 +198,9 @@ Scene parse_scene(std::string_view text,
 std::string resolved_toml(const Scene& scene, const sim::SolverRegistry& registry) {
     const sim::SolverEntry& solver = chosen_solver(scene, registry);
     const HeaderOptions header{scene.title, scene.solver, static_cast<std::int64_t>(scene.seed)};
-    return resolved_table("", header) + "\n" +                //
-           resolved_table("time", scene.time) + "\n" +        //
-           resolved_table("output", scene.output) + "\n" +    //
+    return resolved_table("", header) + "\n" +              //
+           resolved_table("time", scene.time) + "\n" +      //
+           resolved_table("output", scene.output) + "\n" +  //
            detail::toml_text(solver.name, resolved_options(scene, solver), comments_from(solver.describe()));
 }
 

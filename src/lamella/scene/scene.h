@@ -1,15 +1,15 @@
 #pragma once
 
+#include "lamella/sim/node.h"
+#include "lamella/sim/options.h"
+#include "lamella/sim/registry.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "lamella/sim/node.h"
-#include "lamella/sim/options.h"
-#include "lamella/sim/registry.h"
 
 namespace lamella::scene {
 
@@ -24,7 +24,8 @@ struct TimeOptions {
 
     template <class Visitor>
     void visit(Visitor&& option) {
-        option("end", end, sim::at_least(0.0), {"when the run ends; 0: when the solver's own end conditions say", "time"});
+        option("end", end, sim::at_least(0.0),
+               {"when the run ends; 0: when the solver's own end conditions say", "time"});
         option("frame_rate", frame_rate, sim::at_least(0.0),
                {"frames per unit of time; 0: only the first and the last", "1/time"});
         option("series_rate", series_rate, sim::at_least(0.0),
@@ -50,13 +51,13 @@ struct OutputOptions {
 
 /// A checked scene file: the problem, and the options of the solver that it names.
 struct Scene {
-    std::string file;       ///< as the user named it, for messages
+    std::string file;  ///< as the user named it, for messages
     std::string title;
     std::string solver;
     std::uint64_t seed = 1;
     TimeOptions time;
     OutputOptions output;
-    sim::Node root;         ///< everything that was written, overrides applied
+    sim::Node root;                  ///< everything that was written, overrides applied
     std::vector<std::string> notes;  ///< e.g. "[melp] is not used by solver bubble"
 };
 

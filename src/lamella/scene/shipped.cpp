@@ -1,5 +1,12 @@
 #include "lamella/scene/shipped.h"
 
+#include "lamella/core/error.h"
+#include "lamella/core/nearest_word.h"
+#include "lamella/scene/detail/scene_file.h"
+#include "lamella/scene/detail/toml_reader.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
@@ -7,13 +14,6 @@
 #include <map>
 #include <optional>
 #include <system_error>
-
-#include <fmt/format.h>
-
-#include "lamella/core/error.h"
-#include "lamella/core/nearest_word.h"
-#include "lamella/scene/detail/scene_file.h"
-#include "lamella/scene/detail/toml_reader.h"
 
 namespace lamella::scene {
 namespace {

@@ -1,8 +1,8 @@
 #include "lamella/sim/node.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace lamella::sim {
 namespace {
@@ -62,11 +62,16 @@ std::string found_text(const Node& node) {
 std::string quoted_text(std::string_view text) {
     std::string quoted = "\"";
     for (const char c : text) {
-        if (c == '"' || c == '\\') quoted += fmt::format("\\{}", c);
-        else if (c == '\n') quoted += "\\n";
-        else if (c == '\t') quoted += "\\t";
-        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) quoted += fmt::format("\\u{:04x}", int{c});
-        else quoted += c;
+        if (c == '"' || c == '\\')
+            quoted += fmt::format("\\{}", c);
+        else if (c == '\n')
+            quoted += "\\n";
+        else if (c == '\t')
+            quoted += "\\t";
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            quoted += fmt::format("\\u{:04x}", int{c});
+        else
+            quoted += c;
     }
     return quoted + "\"";
 }

@@ -1,13 +1,13 @@
 #pragma once
 
+#include "lamella/core/error.h"
+
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
-
-#include "lamella/core/error.h"
 
 namespace lamella::sim {
 

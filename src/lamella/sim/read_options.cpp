@@ -1,14 +1,14 @@
 #include "lamella/sim/read_options.h"
 
-#include <cmath>
-#include <limits>
-#include <optional>
-
-#include <fmt/format.h>
-
 #include "lamella/core/error.h"
 #include "lamella/core/nearest_word.h"
 #include "lamella/core/units.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
 
 namespace lamella::sim {
 namespace {
@@ -94,7 +94,8 @@ std::int64_t read_whole(const Node& node, const Range& range, const Doc& doc, st
 const Node::Array& array_of_three(const Node& node, std::string_view what, const Doc& doc) {
     const Node::Array* items = node.array();
     if (items == nullptr) refuse_type(node, fmt::format("an array of 3 {}", what), doc);
-    if (items->size() != 3) refuse(node, fmt::format("has {} entries; 3 {} are expected ({})", items->size(), what, doc.text));
+    if (items->size() != 3)
+        refuse(node, fmt::format("has {} entries; 3 {} are expected ({})", items->size(), what, doc.text));
     return *items;
 }
 
@@ -111,7 +112,8 @@ std::string last_part(const std::string& dotted) { return dotted.substr(dotted.r
 std::string range_text(const Range& range) {
     const bool low = std::isfinite(range.low), high = std::isfinite(range.high);
     if (low && high)
-        return fmt::format("{}{}, {}{}", range.low_open ? "(" : "[", range.low, range.high, range.high_open ? ")" : "]");
+        return fmt::format("{}{}, {}{}", range.low_open ? "(" : "[", range.low, range.high,
+                           range.high_open ? ")" : "]");
     if (low) return fmt::format("{} {}", range.low_open ? ">" : ">=", range.low);
     if (high) return fmt::format("{} {}", range.high_open ? "<" : "<=", range.high);
     return {};
@@ -197,7 +199,8 @@ void OptionReader::collect_unknown() {
     const Node::Table* entries = table_.table();
     if (entries == nullptr) return;
     for (const auto& [key, node] : *entries)
-        if (std::find(names_.begin(), names_.end(), key) == names_.end()) unknown_.push_back({&node, key, table_.path, names_});
+        if (std::find(names_.begin(), names_.end(), key) == names_.end())
+            unknown_.push_back({&node, key, table_.path, names_});
 }
 
 void OptionReader::finish(std::span<const OptionInfo> all) {
@@ -207,13 +210,15 @@ void OptionReader::finish(std::span<const OptionInfo> all) {
         return a.node->where.line < b.node->where.line;
     });
     // A right name at the wrong place helps more than a similar one at the right place.
-    const auto at = [](const std::string& table, const std::string& name) { return table.empty() ? name : table + "." + name; };
+    const auto at = [](const std::string& table, const std::string& name) {
+        return table.empty() ? name : table + "." + name;
+    };
     std::optional<std::string> meant;
     for (const OptionInfo& info : all)
         if (!meant && last_part(info.name) == first->key) meant = at(table_.path, info.name);
     if (const auto near = nearest_word(first->key, first->known); !meant && near) meant = at(first->table, *near);
-    const std::string help = meant ? fmt::format("did you mean {}?", *meant)
-                                   : fmt::format("known are {}", fmt::join(first->known, ", "));
+    const std::string help =
+        meant ? fmt::format("did you mean {}?", *meant) : fmt::format("known are {}", fmt::join(first->known, ", "));
     throw InputError(first->node->where, fmt::format("{} is not an option; {}", first->node->path, help));
 }
 

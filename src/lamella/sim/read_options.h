@@ -2,6 +2,11 @@
 
 // From the description of a solver's options (options.h) to a checked options struct, and back to text.
 
+#include "lamella/core/vec.h"
+#include "lamella/sim/node.h"
+#include "lamella/sim/options.h"
+#include "lamella/sim/registry.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -9,11 +14,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "lamella/core/vec.h"
-#include "lamella/sim/node.h"
-#include "lamella/sim/options.h"
-#include "lamella/sim/registry.h"
 
 namespace lamella::sim {
 
@@ -170,7 +170,8 @@ std::vector<OptionInfo> describe_options() {
 /// The options that `table` gives, defaults for the rest.
 /// @param table  a table of a scene; an empty Node gives the defaults
 /// @throws InputError  unknown key (with the nearest known one), wrong type, out of range, not finite, unit of another
-///                     dimension, unknown word; the message names file:line, the key, what was found and what is allowed
+///                     dimension, unknown word; the message names file:line, the key, what was found and what is
+///                     allowed
 template <class Options>
 Options read_options(const Node& table, const ModelUnits& units = {}) {
     Options options;

@@ -1,8 +1,8 @@
 #include "lamella/core/nearest_word.h"
 
-#include <vector>
-
 #include <gtest/gtest.h>
+
+#include <vector>
 
 namespace lamella {
 namespace {

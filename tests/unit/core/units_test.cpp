@@ -1,14 +1,14 @@
 #include "lamella/core/units.h"
 
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <utility>
+#include "lamella/core/error.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "lamella/core/error.h"
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
 
 namespace lamella {
 namespace {
@@ -25,9 +25,9 @@ std::string error_of(Call&& call) {
 
 TEST(Units, OfPowersOfTenAreExactToTheLastBit) {
     const std::pair<const char*, double> cases[] = {
-        {"5 cm", 0.05},      {"7 cm", 0.07},      {"0.1 mm", 1e-4},   {"400 nm", 400e-9},     {"1e3 um", 1e-3},
-        {"-5.2 cm", -0.052}, {"+3 km", 3000.0},   {"2.5E-1m", 0.25},  {"0.3 \u00b5m", 0.3e-6}, {".5 dm", 0.05},
-        {"5.cm", 0.05},      {"  1  m  ", 1.0},   {"1e-320 km", 1e-317}};
+        {"5 cm", 0.05},      {"7 cm", 0.07},    {"0.1 mm", 1e-4},     {"400 nm", 400e-9},      {"1e3 um", 1e-3},
+        {"-5.2 cm", -0.052}, {"+3 km", 3000.0}, {"2.5E-1m", 0.25},    {"0.3 \u00b5m", 0.3e-6}, {".5 dm", 0.05},
+        {"5.cm", 0.05},      {"  1  m  ", 1.0}, {"1e-320 km", 1e-317}};
     for (const auto& [text, meters] : cases) EXPECT_EQ(parse_quantity(text, "m"), meters) << text;
 }
 
@@ -94,16 +94,36 @@ TEST(Units, SuggestTheNearestKnownUnit) {
 }
 
 TEST(Units, RefuseWhatIsNoQuantity) {
-    for (const char* text : {"", "cm", "five cm", "5 cm cm/", "5 m^", "5 m^x", "5 m^99", "5 m^2^3", "5 (m", "5 m)", "5 *m",
-                             "5 m//s", "1e999 m", "1e-999 m", "nan m", "inf", "5 m\n", "0x10 m", "1e99999999999 m", "- m",
-                             "5 12", "5 ((((((((((m))))))))))"})
+    for (const char* text : {"",
+                             "cm",
+                             "five cm",
+                             "5 cm cm/",
+                             "5 m^",
+                             "5 m^x",
+                             "5 m^99",
+                             "5 m^2^3",
+                             "5 (m",
+                             "5 m)",
+                             "5 *m",
+                             "5 m//s",
+                             "1e999 m",
+                             "1e-999 m",
+                             "nan m",
+                             "inf",
+                             "5 m\n",
+                             "0x10 m",
+                             "1e99999999999 m",
+                             "- m",
+                             "5 12",
+                             "5 ((((((((((m))))))))))"})
         EXPECT_THROW(parse_quantity(text), InputError) << text;
     EXPECT_THROW(parse_quantity("5 " + std::string(10000, '(')), InputError);
     EXPECT_THROW(parse_quantity("1" + std::string(10000, '0') + " m"), InputError);
 }
 
 TEST(Units, MessagesStayOnOneShortLine) {
-    for (const std::string& text : {std::string("5 \n\x01\x7f m"), std::string(5000, 'x'), "5 " + std::string(5000, 'y')}) {
+    for (const std::string& text :
+         {std::string("5 \n\x01\x7f m"), std::string(5000, 'x'), "5 " + std::string(5000, 'y')}) {
         const std::string error = error_of([&] { parse_quantity(text, "m"); });
         EXPECT_EQ(error.find('\n'), std::string::npos);
         EXPECT_LT(error.size(), 300u) << error;

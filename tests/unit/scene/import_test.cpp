@@ -1,13 +1,13 @@
 #include "lamella/scene/import.h"
 
-#include <filesystem>
-#include <string>
+#include "lamella/scene/detail/lenient_json.h"
+#include "lamella/scene/scene.h"
 
 #include <gtest/gtest.h>
 
-#include "lamella/scene/detail/lenient_json.h"
-#include "lamella/scene/scene.h"
 #include "toy_solver.h"
+#include <filesystem>
+#include <string>
 
 namespace lamella::scene {
 namespace {
@@ -18,7 +18,9 @@ const fs::path kData = fs::path(__FILE__).parent_path() / "../../data/import";
 
 Scene scene_from(const std::string& text) { return parse_scene(text, "imported.toml", {}, toy::registry()); }
 
-bubble::Options options_of(const Scene& scene) { return sim::read_options<bubble::Options>(*scene.root.find("bubble")); }
+bubble::Options options_of(const Scene& scene) {
+    return sim::read_options<bubble::Options>(*scene.root.find("bubble"));
+}
 
 std::string error_of(const std::string& json) {
     try {
@@ -94,17 +96,22 @@ TEST(ImportFoamJson, ReadsCubblesNestedForm) {
 }
 
 TEST(ImportFoamJson, RefusesWrongValuesWithTheirLine) {
-    EXPECT_EQ(error_of("{\n\"phiTarget\": 95}"),
-              "in.json:2: phiTarget = 95 is outside (0, 2) (phi: volume of the balls / volume of the box, overlaps counted"
-              " twice); as a fraction, 95 % is 0.95");
-    expect_contains(error_of("{\"kappa\": 0.1,\n\n\"numBubblesIn\": 1.5}"), "in.json:3: numBubblesIn = 1.5 is no whole number");
-    expect_contains(error_of("{\"bubbles\": {\n\"numStart\": \"many\"}}"), "in.json:2: bubbles.numStart = \"many\" is a string");
+    EXPECT_EQ(
+        error_of("{\n\"phiTarget\": 95}"),
+        "in.json:2: phiTarget = 95 is outside (0, 2) (phi: volume of the balls / volume of the box, overlaps counted"
+        " twice); as a fraction, 95 % is 0.95");
+    expect_contains(error_of("{\"kappa\": 0.1,\n\n\"numBubblesIn\": 1.5}"),
+                    "in.json:3: numBubblesIn = 1.5 is no whole number");
+    expect_contains(error_of("{\"bubbles\": {\n\"numStart\": \"many\"}}"),
+                    "in.json:2: bubbles.numStart = \"many\" is a string");
     expect_contains(error_of("{\"rngSeed\": -4}"), "in.json:1: rngSeed = -4 is not >= 0");
     expect_contains(error_of("{\"errorTolerance\": 0}"), "errorTolerance = 0 is not > 0");
-    expect_contains(error_of("{\"boxRelDim\": {\"x\": 1, \"y\": 1}}"), "boxRelDim must have x, y and z and nothing else");
+    expect_contains(error_of("{\"boxRelDim\": {\"x\": 1, \"y\": 1}}"),
+                    "boxRelDim must have x, y and z and nothing else");
     expect_contains(error_of("{\"boxRelDim\": {\"x\": 1, \"y\": -1, \"z\": 1}}"), "boxRelDim.y = -1 is not > 0");
     expect_contains(error_of("{\"box\": {\"wall\": {\"x\": 2}}}"), "box.wall.x = 2 is neither 0 nor 1");
-    expect_contains(error_of("{\"flow\": {\"impose\": null}, \"kappa\": 1}"), "flow.impose = nothing is neither 0 nor 1");
+    expect_contains(error_of("{\"flow\": {\"impose\": null}, \"kappa\": 1}"),
+                    "flow.impose = nothing is neither 0 nor 1");
     expect_contains(error_of("{\"phiTarget\": 0.9,\n\"constants\": {\"phi\": 0.8}}"),
                     "in.json:2: constants.phi says again what phiTarget said on line 1");
     expect_contains(error_of("{\"solver\": \"x\"}"), "in.json: has none of the keys");
@@ -126,7 +133,8 @@ TEST(ImportFoamJson, AMissingFileIsAnIoErrorAndADirectoryIsRefused) {
 
 TEST(LenientJson, ReadsStandardJson) {
     const sim::Node root = detail::read_lenient_json(
-        R"({"a": [1, -2.5, 1e5, true, false, null], "s": "\"\\\/\b\f\n\r\t\u00e9\ud83e\uddfc", "e": {}, "f": []})", "x");
+        R"({"a": [1, -2.5, 1e5, true, false, null], "s": "\"\\\/\b\f\n\r\t\u00e9\ud83e\uddfc", "e": {}, "f": []})",
+        "x");
     const sim::Node::Array& items = *root.find("a")->array();
     EXPECT_EQ(std::get<std::int64_t>(items[0].value), 1);
     EXPECT_EQ(std::get<double>(items[1].value), -2.5);
@@ -146,10 +154,29 @@ TEST(LenientJson, ForgivesAMissingCommaAndBrokenStrings) {
 }
 
 TEST(LenientJson, RefusesEverythingElseWithItsLine) {
-    for (const char* text : {"[1]", "{", "{\"a\"", "{\"a\": }", "{\"a\": 1,}", "{\"a\": 1,,\"b\": 2}", "{\"a\" 1}", "{a: 1}",
-                             "{\"a\": 1} x", "{\"a\": 1, \"a\": 2}", "{\"a\": 1e999}", "{\"a\": --1}", "{\"a\": nan}", "{\"a\": 0x1}",
-                             "{\"a\": \"\\x\"}", "{\"a\": \"\\u12\"}", "{\"a\": \"\\ud800\"}", "{\"a\": \"\\udc00\"}",
-                             "{\"a\": \"\\ud800\\u0041\"}", "{\"a\": \"open}", "{\"a\": \"\x01\"}", "{\"a\": \"\\", "{\"a\": \"\xff\"}"})
+    for (const char* text : {"[1]",
+                             "{",
+                             "{\"a\"",
+                             "{\"a\": }",
+                             "{\"a\": 1,}",
+                             "{\"a\": 1,,\"b\": 2}",
+                             "{\"a\" 1}",
+                             "{a: 1}",
+                             "{\"a\": 1} x",
+                             "{\"a\": 1, \"a\": 2}",
+                             "{\"a\": 1e999}",
+                             "{\"a\": --1}",
+                             "{\"a\": nan}",
+                             "{\"a\": 0x1}",
+                             "{\"a\": \"\\x\"}",
+                             "{\"a\": \"\\u12\"}",
+                             "{\"a\": \"\\ud800\"}",
+                             "{\"a\": \"\\udc00\"}",
+                             "{\"a\": \"\\ud800\\u0041\"}",
+                             "{\"a\": \"open}",
+                             "{\"a\": \"\x01\"}",
+                             "{\"a\": \"\\",
+                             "{\"a\": \"\xff\"}"})
         EXPECT_THROW(detail::read_lenient_json(text, "x"), InputError) << text;
     std::string deep = "{\"a\": ";
     for (int i = 0; i < 100000; ++i) deep += "[";
@@ -157,9 +184,10 @@ TEST(LenientJson, RefusesEverythingElseWithItsLine) {
 }
 
 TEST(LenientJson, KnowsUtf8) {
-    for (const char* good : {"", "a", "\u00e9", "\u20ac", "\U0001f9fc", "\uffff", "\U0010ffff"}) EXPECT_TRUE(detail::is_utf8(good)) << good;
-    for (const char* bad : {"\x80", "\xc0\x80", "\xc3", "\xe0\x80\x80", "\xed\xa0\x80", "\xf0\x80\x80\x80", "\xf4\x90\x80\x80", "\xff",
-                            "\xe2\x82", "a\xe2\x28\xa1"})
+    for (const char* good : {"", "a", "\u00e9", "\u20ac", "\U0001f9fc", "\uffff", "\U0010ffff"})
+        EXPECT_TRUE(detail::is_utf8(good)) << good;
+    for (const char* bad : {"\x80", "\xc0\x80", "\xc3", "\xe0\x80\x80", "\xed\xa0\x80", "\xf0\x80\x80\x80",
+                            "\xf4\x90\x80\x80", "\xff", "\xe2\x82", "a\xe2\x28\xa1"})
         EXPECT_FALSE(detail::is_utf8(bad));
 }
 

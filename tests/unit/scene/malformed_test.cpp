@@ -1,16 +1,16 @@
 // Every file of tests/data/malformed is refused with one line that names the file and says what is wrong: the text
 // after "# expect: " on its first line.
 
+#include "lamella/scene/scene.h"
+
+#include <gtest/gtest.h>
+
+#include "toy_solver.h"
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
-
-#include <gtest/gtest.h>
-
-#include "lamella/scene/scene.h"
-#include "toy_solver.h"
 
 namespace lamella::scene {
 namespace {

@@ -1,16 +1,15 @@
 #include "lamella/scene/scene.h"
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "toy_solver.h"
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include "toy_solver.h"
 
 namespace lamella::scene {
 namespace {
@@ -33,7 +32,9 @@ std::string error_of(const std::string& text, const std::vector<std::string>& ov
     return "no error";
 }
 
-void expect_error(const std::string& text, const std::string& expected, const std::vector<std::string>& overrides = {}) {
+void expect_error(const std::string& text,
+                  const std::string& expected,
+                  const std::vector<std::string>& overrides = {}) {
     const std::string error = error_of(text, overrides);
     EXPECT_NE(error.find(expected), std::string::npos) << error;
 }
@@ -95,8 +96,10 @@ velocity = ["3 cm/s", 0, -1.5]
 
 TEST(Scene, TakesPlainTimesWhereTheSolverHasNoSeconds) {
     EXPECT_EQ(parse("solver = 'still'\n[time]\nend = 20").time.end, 20.0);
-    expect_error("solver = 'still'\n[time]\nend = '20 s'", "foam.toml:3: time.end = \"20 s\" is a string; a plain number");
-    expect_error("solver = 'toy'\n[time]\nend = '20 m'", "foam.toml:3: time.end = \"20 m\" is a length [m]; a time [s]");
+    expect_error("solver = 'still'\n[time]\nend = '20 s'",
+                 "foam.toml:3: time.end = \"20 s\" is a string; a plain number");
+    expect_error("solver = 'toy'\n[time]\nend = '20 m'",
+                 "foam.toml:3: time.end = \"20 m\" is a length [m]; a time [s]");
 }
 
 TEST(Scene, NotesTablesOfOtherSolvers) {
@@ -113,8 +116,8 @@ TEST(Scene, ReportsErrorsInTheOrderOfTheFile) {
 
 TEST(Scene, OverridesValuesFromTheCommandLine) {
     const std::string text = "solver = 'toy'\n[toy]\ncount = 5\nlabel = 'x'";
-    const Scene scene = parse(text, {"toy.count=7", "toy.label=plain words", "toy.flow.velocity=[1, '2 cm/s', 3]", "seed=9",
-                                     "toy.flow.color=red", "title = \"A = B\"", "time.end=1 min"});
+    const Scene scene = parse(text, {"toy.count=7", "toy.label=plain words", "toy.flow.velocity=[1, '2 cm/s', 3]",
+                                     "seed=9", "toy.flow.color=red", "title = \"A = B\"", "time.end=1 min"});
     const toy::Options options = toy_options(scene);
     EXPECT_EQ(options.count, 7);
     EXPECT_EQ(options.label, "plain words");
@@ -153,7 +156,8 @@ TEST(Scene, SaysWhichSolversThereAre) {
 }
 
 TEST(ResolvedScene, HasFileNamesThatDoNotDependOnWhereItStands) {
-    const Scene scene = parse_scene("solver = 'toy'\n[toy]\nfile = '../a.csv'", "/some/where/foam.toml", {}, toy::registry());
+    const Scene scene =
+        parse_scene("solver = 'toy'\n[toy]\nfile = '../a.csv'", "/some/where/foam.toml", {}, toy::registry());
     const Scene again = parse_scene(resolved_toml(scene, toy::registry()), "/else/run.toml", {}, toy::registry());
     EXPECT_EQ(toy_options(again).file, "/some/a.csv");
 }
@@ -162,7 +166,8 @@ TEST(ResolvedScene, ExplainsEveryLine) {
     const std::string text = resolved_toml(parse("solver = 'toy'"), toy::registry());
     EXPECT_NE(text.find("count = 10                              # bubbles at the start\n"), std::string::npos) << text;
     EXPECT_NE(text.find("radius = 0.05                           # [m] of a bubble\n"), std::string::npos) << text;
-    EXPECT_NE(text.find("color = \"green\"                         # red | green | blue; a color\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("color = \"green\"                         # red | green | blue; a color\n"), std::string::npos)
+        << text;
     EXPECT_NE(text.find("[toy.flow]                              # a prescribed flow\n"), std::string::npos) << text;
 }
 
@@ -174,7 +179,8 @@ double any_double(std::mt19937_64& random) {
 
 /// Text with everything that needs care in TOML.
 std::string any_text(std::mt19937_64& random) {
-    static const std::vector<std::string> kPieces{"a", " ", "\"", "\\", "\n", "\t", "#", "'", "=", "\x01", "\x7f", "\u00e9", "\U0001f9fc"};
+    static const std::vector<std::string> kPieces{"a", " ", "\"",   "\\",   "\n",     "\t",        "#",
+                                                  "'", "=", "\x01", "\x7f", "\u00e9", "\U0001f9fc"};
     std::string text;
     for (std::size_t i = random() % 12; i > 0; --i) text += kPieces[random() % kPieces.size()];
     return text;
@@ -221,12 +227,14 @@ TEST(Scene, LivesThroughNestingInEveryForm) {
         for (int i = 0; i < 100000; ++i) text += piece;
         return text;
     };
-    for (const std::string& text : {repeated("a."), "a = " + repeated("["), "a = " + repeated("{a="), "[" + repeated("a.") + "a]",
-                                    "[[" + repeated("a.") + "a]]", repeated("\"a\"."), repeated("'a' . "), "a = {" + repeated("a.") + "a=1}",
-                                    "a = '''\n'''\n" + repeated("a."), "a = \"\\\"\"\n" + repeated("b."), "# '\n" + repeated("a.")})
+    for (const std::string& text :
+         {repeated("a."), "a = " + repeated("["), "a = " + repeated("{a="), "[" + repeated("a.") + "a]",
+          "[[" + repeated("a.") + "a]]", repeated("\"a\"."), repeated("'a' . "), "a = {" + repeated("a.") + "a=1}",
+          "a = '''\n'''\n" + repeated("a."), "a = \"\\\"\"\n" + repeated("b."), "# '\n" + repeated("a.")})
         expect_error(text, "nested deeper than 32 levels");
     // Dots and brackets in strings and comments are no nesting.
-    EXPECT_NO_THROW(parse("title = \"" + repeated("a.").substr(0, 1000) + "\" # " + repeated("[") + "\nsolver = 'toy'"));
+    EXPECT_NO_THROW(
+        parse("title = \"" + repeated("a.").substr(0, 1000) + "\" # " + repeated("[") + "\nsolver = 'toy'"));
     EXPECT_NO_THROW(parse("title = \"\"\"" + repeated("[\n").substr(0, 1000) + "\"\"\"\"\"\nsolver = 'toy'"));
     EXPECT_NO_THROW(parse("title = '''" + repeated("{\n").substr(0, 1000) + "'''''\nsolver = 'toy'"));
 }

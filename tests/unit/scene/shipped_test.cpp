@@ -1,15 +1,15 @@
 #include "lamella/scene/shipped.h"
 
+#include "lamella/core/error.h"
+#include "lamella/scene/scene.h"
+
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
-
-#include <gtest/gtest.h>
-
-#include "lamella/core/error.h"
-#include "lamella/scene/scene.h"
 
 namespace lamella::scene {
 namespace {
@@ -44,7 +44,8 @@ TEST_F(ShippedScenes, AreFoundByNameWithAndWithoutEnding) {
 TEST_F(ShippedScenes, AreSuggestedWhenNearlyRight) {
     use(kScenes);
     EXPECT_EQ(error_of("bubble/coarsning-2d"),
-              "\"bubble/coarsning-2d\" is neither a file nor the name of a shipped scene; did you mean bubble/coarsening-2d?");
+              "\"bubble/coarsning-2d\" is neither a file nor the name of a shipped scene; did you mean "
+              "bubble/coarsening-2d?");
     EXPECT_NE(error_of("flow-2d").find("did you mean bubble/flow-2d?"), std::string::npos);
     EXPECT_NE(error_of("melp/flow-2d-smal.toml").find("did you mean bubble/flow-2d-small?"), std::string::npos);
     EXPECT_NE(error_of("a-very-different-thing").find("`lamella scenes` lists them"), std::string::npos);
@@ -68,7 +69,8 @@ TEST_F(ShippedScenes, AllHaveATitleAndAreAccepted) {
 TEST_F(ShippedScenes, ThatCannotBeReadSayWhy) {
     use(fs::path(__FILE__).parent_path() / "../../data/malformed");
     const std::vector<ShippedScene> scenes = shipped_scenes();
-    const auto broken = std::find_if(scenes.begin(), scenes.end(), [](const auto& s) { return s.name == "duplicate_key"; });
+    const auto broken =
+        std::find_if(scenes.begin(), scenes.end(), [](const auto& s) { return s.name == "duplicate_key"; });
     ASSERT_NE(broken, scenes.end());
     EXPECT_TRUE(broken->title.starts_with("(cannot be read: ")) << broken->title;
     use("/no/such/folder");

@@ -2,15 +2,15 @@
 
 // A solver that does nothing, with one option of every kind: what the scene reader is tested with.
 
-#include <array>
-#include <cstdint>
-#include <memory>
-#include <string>
-
 #include "lamella/core/error.h"
 #include "lamella/sim/read_options.h"
 #include "lamella/sim/registry.h"
 #include "lamella/solvers/bubble/options.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
 
 namespace lamella::toy {
 
@@ -102,9 +102,8 @@ inline sim::SolverEntry bubble_entry() {
                     return std::make_unique<Solver>(sim::SolverInput{});
                 },
             .describe = [] { return sim::describe_options<bubble::Options>(); },
-            .resolve = [](const sim::Node& node) {
-                return sim::resolve_options(sim::read_options<bubble::Options>(node));
-            }};
+            .resolve =
+                [](const sim::Node& node) { return sim::resolve_options(sim::read_options<bubble::Options>(node)); }};
 }
 
 /// "toy" counts time in seconds, "still" has none.

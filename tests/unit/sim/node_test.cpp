@@ -1,8 +1,8 @@
 #include "lamella/sim/node.h"
 
-#include <limits>
-
 #include <gtest/gtest.h>
+
+#include <limits>
 
 namespace lamella::sim {
 namespace {

@@ -1,12 +1,11 @@
 #include "lamella/sim/read_options.h"
 
-#include <cmath>
-#include <limits>
-#include <string>
-
 #include <gtest/gtest.h>
 
 #include "../scene/toy_solver.h"
+#include <cmath>
+#include <limits>
+#include <string>
 
 namespace lamella::sim {
 namespace {
@@ -18,7 +17,8 @@ Node table_with(std::string_view key, auto value) {
     Node table{Node::Table{}, {"foam.toml", 11, 1}, "toy"};
     Node* inner = &table;
     if (const std::size_t dot = key.find('.'); dot != std::string_view::npos) {
-        inner = &table.set(key.substr(0, dot), {Node::Table{}, {"foam.toml", 11, 1}, "toy." + std::string(key.substr(0, dot))});
+        inner = &table.set(key.substr(0, dot),
+                           {Node::Table{}, {"foam.toml", 11, 1}, "toy." + std::string(key.substr(0, dot))});
         key.remove_prefix(dot + 1);
     }
     Node entry{std::move(value), {"foam.toml", 12, 1}, inner->path + "." + std::string(key)};
@@ -78,15 +78,20 @@ TEST(ReadOptions, TakesUnitsForModelQuantitiesOnlyWhereTheModelHasThem) {
 }
 
 TEST(ReadOptions, NamesPlaceKeyFoundAndAllowed) {
-    EXPECT_EQ(error_of("fraction", std::int64_t{90}),
-              "foam.toml:12: toy.fraction = 90 is outside [0, 1] (gas volume / box volume); as a fraction, 90 % is 0.9");
-    EXPECT_EQ(error_of("fraction", -0.5), "foam.toml:12: toy.fraction = -0.5 is outside [0, 1] (gas volume / box volume)");
+    EXPECT_EQ(
+        error_of("fraction", std::int64_t{90}),
+        "foam.toml:12: toy.fraction = 90 is outside [0, 1] (gas volume / box volume); as a fraction, 90 % is 0.9");
+    EXPECT_EQ(error_of("fraction", -0.5),
+              "foam.toml:12: toy.fraction = -0.5 is outside [0, 1] (gas volume / box volume)");
     EXPECT_EQ(error_of("radius", 0.0), "foam.toml:12: toy.radius = 0 is not > 0 (of a bubble)");
     EXPECT_EQ(error_of("radius", std::string("5 kg")),
               "foam.toml:12: toy.radius = \"5 kg\" is a mass [kg]; a length [m] is expected, e.g. \"5 cm\"");
-    EXPECT_EQ(error_of("radius", std::string("-5 cm")), "foam.toml:12: toy.radius = \"-5 cm\" is not > 0 (of a bubble)");
-    EXPECT_EQ(error_of("radius", true), "foam.toml:12: toy.radius = true is a boolean; a number is expected (of a bubble)");
-    EXPECT_EQ(error_of("fast", std::int64_t{1}), "foam.toml:12: toy.fast = 1 is an integer; true or false is expected (hurry)");
+    EXPECT_EQ(error_of("radius", std::string("-5 cm")),
+              "foam.toml:12: toy.radius = \"-5 cm\" is not > 0 (of a bubble)");
+    EXPECT_EQ(error_of("radius", true),
+              "foam.toml:12: toy.radius = true is a boolean; a number is expected (of a bubble)");
+    EXPECT_EQ(error_of("fast", std::int64_t{1}),
+              "foam.toml:12: toy.fast = 1 is an integer; true or false is expected (hurry)");
     EXPECT_EQ(error_of("label", 1.5), "foam.toml:12: toy.label = 1.5 is a number; a string is expected (free text)");
     EXPECT_EQ(error_of("flow.color", std::string("gren")),
               "foam.toml:12: toy.flow.color = \"gren\" is not one of red | green | blue; did you mean \"green\"?");
@@ -94,9 +99,12 @@ TEST(ReadOptions, NamesPlaceKeyFoundAndAllowed) {
               "foam.toml:12: toy.flow.color = \"mauve\" is not one of red | green | blue (a color)");
     EXPECT_EQ(error_of("flow", std::int64_t{3}),
               "foam.toml:12: toy.flow = 3 is an integer; a table [toy.flow] is expected (a prescribed flow)");
-    EXPECT_EQ(error_of("walls", array(true)), "foam.toml:12: toy.walls = [true] has 1 entries; 3 booleans are expected (walls per axis)");
-    EXPECT_EQ(error_of("walls", array(true, true, 0.0)), "foam.toml:12: toy.walls[2] = 0 is a number; true or false is expected (walls per axis)");
-    EXPECT_EQ(error_of("flow.velocity", 1.0), "foam.toml:12: toy.flow.velocity = 1 is a number; an array of 3 numbers is expected (of the liquid)");
+    EXPECT_EQ(error_of("walls", array(true)),
+              "foam.toml:12: toy.walls = [true] has 1 entries; 3 booleans are expected (walls per axis)");
+    EXPECT_EQ(error_of("walls", array(true, true, 0.0)),
+              "foam.toml:12: toy.walls[2] = 0 is a number; true or false is expected (walls per axis)");
+    EXPECT_EQ(error_of("flow.velocity", 1.0),
+              "foam.toml:12: toy.flow.velocity = 1 is a number; an array of 3 numbers is expected (of the liquid)");
 }
 
 TEST(ReadOptions, RefusesNumbersThatAreNotFiniteOrDoNotFit) {
@@ -113,10 +121,12 @@ TEST(ReadOptions, RefusesNumbersThatAreNotFiniteOrDoNotFit) {
 
 TEST(ReadOptions, SuggestsTheRightNameOrTheRightPlace) {
     EXPECT_EQ(error_of("cuont", std::int64_t{1}), "foam.toml:12: toy.cuont is not an option; did you mean toy.count?");
-    EXPECT_EQ(error_of("color", std::int64_t{1}), "foam.toml:12: toy.color is not an option; did you mean toy.flow.color?");
+    EXPECT_EQ(error_of("color", std::int64_t{1}),
+              "foam.toml:12: toy.color is not an option; did you mean toy.flow.color?");
     EXPECT_EQ(error_of("flow.velosity", std::int64_t{1}),
               "foam.toml:12: toy.flow.velosity is not an option; did you mean toy.flow.velocity?");
-    EXPECT_EQ(error_of("flow.count", std::int64_t{1}), "foam.toml:12: toy.flow.count is not an option; did you mean toy.count?");
+    EXPECT_EQ(error_of("flow.count", std::int64_t{1}),
+              "foam.toml:12: toy.flow.count is not an option; did you mean toy.count?");
     EXPECT_EQ(error_of("flow.zzz", std::int64_t{1}),
               "foam.toml:12: toy.flow.zzz is not an option; known are color, velocity, tolerance");
 }

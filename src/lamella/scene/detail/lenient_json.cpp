@@ -1,14 +1,14 @@
 #include "lamella/scene/detail/lenient_json.h"
 
+#include "lamella/core/error.h"
+
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <set>
 #include <utility>
-
-#include <fmt/format.h>
-
-#include "lamella/core/error.h"
 
 namespace lamella::scene::detail {
 namespace {
@@ -54,13 +54,20 @@ private:
         if (depth > kDeepest) refuse(fmt::format("values are nested deeper than {} levels", kDeepest));
         sim::Node node{std::monostate{}, {name_, line_, 0}, std::move(path)};
         const char c = peek();
-        if (c == '{') node.value = object(node.path, depth);
-        else if (c == '[') node.value = array(node.path, depth);
-        else if (c == '"') node.value = string();
-        else if (take_word("true")) node.value = true;
-        else if (take_word("false")) node.value = false;
-        else if (take_word("null")) node.value = std::monostate{};
-        else number(node);
+        if (c == '{')
+            node.value = object(node.path, depth);
+        else if (c == '[')
+            node.value = array(node.path, depth);
+        else if (c == '"')
+            node.value = string();
+        else if (take_word("true"))
+            node.value = true;
+        else if (take_word("false"))
+            node.value = false;
+        else if (take_word("null"))
+            node.value = std::monostate{};
+        else
+            number(node);
         return node;
     }
 
@@ -113,11 +120,16 @@ private:
                 ++at_;
                 return out;
             }
-            if (c == '\\') escape(out);
-            else if (c == '\n') ++line_, out += ' ';
-            else if (c == '\r') continue;
-            else if (static_cast<unsigned char>(c) < 0x20 && c != '\t') refuse("there is a control character in a string");
-            else out += c;
+            if (c == '\\')
+                escape(out);
+            else if (c == '\n')
+                ++line_, out += ' ';
+            else if (c == '\r')
+                continue;
+            else if (static_cast<unsigned char>(c) < 0x20 && c != '\t')
+                refuse("there is a control character in a string");
+            else
+                out += c;
         }
         line_ = begin;
         refuse("a string begins here and does not end");
@@ -157,7 +169,8 @@ private:
 
     void number(sim::Node& node) {
         const std::size_t begin = at_;
-        while (at_ < text_.size() && std::string_view("+-.0123456789eE").find(text_[at_]) != std::string_view::npos) ++at_;
+        while (at_ < text_.size() && std::string_view("+-.0123456789eE").find(text_[at_]) != std::string_view::npos)
+            ++at_;
         const std::string_view digits = text_.substr(begin, at_ - begin);
         const char* const end = digits.data() + digits.size();
         if (digits.empty()) refuse("a value is expected");
@@ -200,7 +213,12 @@ bool is_utf8(std::string_view text) {
     for (std::size_t i = 0; i < text.size();) {
         const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
         const unsigned lead = byte(i);
-        const std::size_t length = lead < 0x80 ? 1 : lead < 0xc2 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : lead < 0xf5 ? 4 : 0;
+        const std::size_t length = lead < 0x80   ? 1
+                                   : lead < 0xc2 ? 0
+                                   : lead < 0xe0 ? 2
+                                   : lead < 0xf0 ? 3
+                                   : lead < 0xf5 ? 4
+                                                 : 0;
         if (length == 0 || i + length > text.size()) return false;
         for (std::size_t k = 1; k < length; ++k)
             if ((byte(i + k) & 0xc0) != 0x80) return false;

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "lamella/sim/node.h"
+
 #include <string>
 #include <string_view>
-
-#include "lamella/sim/node.h"
 
 namespace lamella::scene::detail {
 

@@ -1,13 +1,13 @@
 #include "lamella/scene/detail/overrides.h"
 
-#include <string_view>
-#include <utility>
-#include <vector>
+#include "lamella/core/error.h"
+#include "lamella/scene/detail/toml_reader.h"
 
 #include <fmt/format.h>
 
-#include "lamella/core/error.h"
-#include "lamella/scene/detail/toml_reader.h"
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace lamella::scene::detail {
 namespace {
@@ -18,8 +18,10 @@ std::vector<std::string> parts_of(std::string_view key, const SourceLocation& wh
     while (key.ends_with(' ')) key.remove_suffix(1);  // "seed = 3" in quotes
     std::vector<std::string> parts(1);
     for (const char c : key) {
-        if (c == '.') parts.emplace_back();
-        else parts.back() += c;
+        if (c == '.')
+            parts.emplace_back();
+        else
+            parts.back() += c;
     }
     for (const std::string& part : parts)
         if (sim::key_text(part) != part || key.size() > kLongestKey)

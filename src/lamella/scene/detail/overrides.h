@@ -1,8 +1,8 @@
 #pragma once
 
-#include <string>
-
 #include "lamella/sim/node.h"
+
+#include <string>
 
 namespace lamella::scene::detail {
 

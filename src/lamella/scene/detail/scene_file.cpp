@@ -1,14 +1,14 @@
 #include "lamella/scene/detail/scene_file.h"
 
+#include "lamella/core/error.h"
+#include "lamella/scene/detail/toml_reader.h"
+
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <system_error>
-
-#include <fmt/format.h>
-
-#include "lamella/core/error.h"
-#include "lamella/scene/detail/toml_reader.h"
 
 namespace lamella::scene::detail {
 

@@ -1,16 +1,17 @@
 #include "lamella/scene/detail/toml_reader.h"
 
+#include "lamella/core/error.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
-#include "lamella/core/error.h"
-
-// toml++ asserts things that malformed text breaks ("[" at the end of a line), and in release builds, that of its shared
-// library included, it hands these to the optimizer as promises. Compiled here, without them, its checks decide alone.
+// toml++ asserts things that malformed text breaks ("[" at the end of a line), and in release builds, that of its
+// shared library included, it hands these to the optimizer as promises. Compiled here, without them, its checks decide
+// alone.
 #undef TOML_HEADER_ONLY
 #undef TOML_SHARED_LIB
 #undef NDEBUG
@@ -42,20 +43,28 @@ public:
     void run() {
         while (at_ < text_.size()) {
             const char c = text_[at_];
-            if (c == '"' || c == '\'') skip_string(c);
-            else if (c == '#') skip_to_line_end();
-            else count(c);
+            if (c == '"' || c == '\'')
+                skip_string(c);
+            else if (c == '#')
+                skip_to_line_end();
+            else
+                count(c);
         }
     }
 
 private:
     void count(char c) {
         ++at_;
-        if (c == '.') ++dots_;
-        else if (c == '[' || c == '{') ++brackets_, dots_ = 0;
-        else if (c == ']' || c == '}') --brackets_, dots_ = 0;
-        else if (c == '=' || c == ',') dots_ = 0;
-        else if (c == '\n') ++line_, dots_ = 0;
+        if (c == '.')
+            ++dots_;
+        else if (c == '[' || c == '{')
+            ++brackets_, dots_ = 0;
+        else if (c == ']' || c == '}')
+            --brackets_, dots_ = 0;
+        else if (c == '=' || c == ',')
+            dots_ = 0;
+        else if (c == '\n')
+            ++line_, dots_ = 0;
         if (dots_ <= kDeepest && brackets_ <= kDeepest) return;
         throw InputError({name_, line_, 0}, fmt::format("tables or arrays are nested deeper than {} levels", kDeepest));
     }
@@ -124,10 +133,14 @@ private:
         if (const auto* nested = source.as_table()) return table(*nested, std::move(where), std::move(path));
         if (const auto* items = source.as_array()) return array(*items, std::move(where), std::move(path));
         sim::Node node{std::monostate{}, std::move(where), std::move(path)};
-        if (const auto* text = source.as_string()) node.value = text->get();
-        else if (const auto* whole = source.as_integer()) node.value = whole->get();
-        else if (const auto* number = source.as_floating_point()) node.value = number->get();
-        else if (const auto* flag = source.as_boolean()) node.value = flag->get();
+        if (const auto* text = source.as_string())
+            node.value = text->get();
+        else if (const auto* whole = source.as_integer())
+            node.value = whole->get();
+        else if (const auto* number = source.as_floating_point())
+            node.value = number->get();
+        else if (const auto* flag = source.as_boolean())
+            node.value = flag->get();
         else
             throw InputError(node.where, fmt::format("{} is a date or time of day; a scene has none: write a number or"
                                                      " a quoted string",
@@ -158,11 +171,13 @@ InputError explained(const toml::parse_error& problem, const std::string& name) 
     constexpr std::string_view kBefore = "Error while parsing ";  // the reader knows that something is wrong
     if (text.starts_with(kBefore)) text.remove_prefix(kBefore.size());
     std::string help;
-    if (text.find("redefine") != std::string_view::npos) help = " (each key and table may be given once)";
+    if (text.find("redefine") != std::string_view::npos)
+        help = " (each key and table may be given once)";
     else if (text.find("utf-8") != std::string_view::npos || text.find("UTF-8") != std::string_view::npos)
         help = " (a scene is UTF-8 text)";
     const auto& position = problem.source().begin;
-    return InputError({name, static_cast<int>(position.line), static_cast<int>(position.column)}, one_line(text) + help);
+    return InputError({name, static_cast<int>(position.line), static_cast<int>(position.column)},
+                      one_line(text) + help);
 }
 
 sim::Node parse(std::string_view text, const std::string& name) {

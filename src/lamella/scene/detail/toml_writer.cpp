@@ -1,8 +1,8 @@
 #include "lamella/scene/detail/toml_writer.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace lamella::scene::detail {
 namespace {
@@ -42,8 +42,8 @@ void write_table(std::string& out,
                  const CommentOf& comment_of) {
     for (const auto& [key, value] : entries)
         if (value.table() == nullptr)
-            out += commented(fmt::format("{} = {}", sim::key_text(key), toml_value_text(value)),
-                             comment_of(prefix + key));
+            out +=
+                commented(fmt::format("{} = {}", sim::key_text(key), toml_value_text(value)), comment_of(prefix + key));
     for (const auto& [key, value] : entries) {
         if (value.table() == nullptr) continue;
         const std::string inner = heading.empty() ? sim::key_text(key) : heading + "." + sim::key_text(key);

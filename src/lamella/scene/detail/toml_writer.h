@@ -1,10 +1,10 @@
 #pragma once
 
+#include "lamella/sim/node.h"
+
 #include <functional>
 #include <string>
 #include <string_view>
-
-#include "lamella/sim/node.h"
 
 namespace lamella::scene::detail {
 
