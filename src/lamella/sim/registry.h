@@ -14,8 +14,8 @@ namespace lamella::sim {
 /// One option of a solver, as `lamella explain` and the docs show it.
 struct OptionInfo {
     std::string name;      ///< "flow.velocity"
-    std::string type;      ///< "number", "integer", "boolean", "word", "text", "3 numbers", "3 booleans"; "group": a table, the
-                           ///< options in it follow
+    std::string type;      ///< "number", "integer", "boolean", "word", "text", "3 numbers", "3 booleans";
+                           ///< "group": a table, the options in it follow
     std::string default_text;
     std::string allowed;   ///< "[0, 1]", "background | pairwise", ""
     Doc doc;
