@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kData = fs::path(__FILE__).parent_path() / "../../data/import";
+const fs::path kData = fs::path(LAMELLA_SOURCE_DIR) / "tests/data/import";
 
 Scene scene_from(const std::string& text) { return parse_scene(text, "imported.toml", {}, toy::registry()); }
 

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path data_folder() { return fs::path(__FILE__).parent_path() / "../../data/malformed"; }
+fs::path data_folder() { return fs::path(LAMELLA_SOURCE_DIR) / "tests/data/malformed"; }
 
 std::string error_of(const fs::path& path) {
     try {

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kScenes = fs::path(__FILE__).parent_path() / "../../../scenes";
+const fs::path kScenes = fs::path(LAMELLA_SOURCE_DIR) / "scenes";
 
 /// Points LAMELLA_SCENES at a folder for one test.
 class ShippedScenes : public ::testing::Test {
@@ -67,7 +67,7 @@ TEST_F(ShippedScenes, AllHaveATitleAndAreAccepted) {
 }
 
 TEST_F(ShippedScenes, ThatCannotBeReadSayWhy) {
-    use(fs::path(__FILE__).parent_path() / "../../data/malformed");
+    use(fs::path(LAMELLA_SOURCE_DIR) / "tests/data/malformed");
     const std::vector<ShippedScene> scenes = shipped_scenes();
     const auto broken =
         std::find_if(scenes.begin(), scenes.end(), [](const auto& s) { return s.name == "duplicate_key"; });
