@@ -1,0 +1,77 @@
+#include "lamella/run/run.h"
+
+#include <fmt/format.h>
+
+#include "lamella/core/error.h"
+#include "lamella/io/atomic_file.h"
+#include "lamella/run/detail/loop.h"
+
+namespace lamella::run {
+namespace {
+
+/// A solver ready to go on, and where the loop was; no state when it must start from the scene.
+struct Resumption {
+    std::unique_ptr<sim::Solver> solver;
+    std::optional<RunState> state;
+    std::string note;  ///< what is worth telling, or ""
+};
+
+Resumption read_last_checkpoint(const RunFolder& folder,
+                                const scene::Scene& scene,
+                                const sim::SolverRegistry& registry) {
+    std::string damage;
+    for (const std::filesystem::path& file : {folder.checkpoint(), folder.previous_checkpoint()}) {
+        if (!std::filesystem::exists(file)) continue;
+        try {
+            auto solver = scene::create_solver(scene, registry);
+            RunState state = read_checkpoint(file, scene.solver, *solver);
+            return {std::move(solver), std::move(state),
+                    damage.empty() ? "" : damage + "; continued from the checkpoint before it"};
+        } catch (const InputError& error) {
+            if (damage.empty()) damage = error.what();
+        }
+    }
+    if (!damage.empty()) throw InputError(damage);
+    return {scene::create_solver(scene, registry), std::nullopt, "there was no checkpoint yet: started over"};
+}
+
+}  // namespace
+
+RunResult run_scene(const scene::Scene& scene,
+                    const sim::SolverRegistry& registry,
+                    const std::filesystem::path& path,
+                    const RunSettings& settings) {
+    // What can be wrong with the input is found before anything is written.
+    auto solver = scene::create_solver(scene, registry);
+    const std::string resolved = scene::resolved_toml(scene, registry);
+    const Schedule schedule(scene.time, settings.until);
+
+    RunFolder folder = RunFolder::create(path, settings.existing);
+    try {
+        io::write_file_atomically(folder.scene(), resolved);
+    } catch (...) {
+        folder.discard_if_empty();
+        throw;
+    }
+    return Loop(folder, scene, schedule, settings, std::move(solver)).run();
+}
+
+RunResult resume_run(const std::filesystem::path& path,
+                     const sim::SolverRegistry& registry,
+                     const RunSettings& settings) {
+    const RunFolder folder = RunFolder::open(path);
+    const scene::Scene scene = scene::load_scene(folder.scene(), {}, registry);
+    const Schedule schedule(scene.time, settings.until);
+    Resumption from = read_last_checkpoint(folder, scene, registry);
+
+    if (settings.until && is_after(from.solver->time(), *settings.until))
+        throw InputError(fmt::format("{} is at time {:.6g} already, beyond {:.6g}", path.string(), from.solver->time(),
+                                     *settings.until));
+
+    Loop loop(folder, scene, schedule, settings, std::move(from.solver));
+    if (!from.note.empty()) loop.note(from.note);
+    if (from.state) loop.take_up(std::move(*from.state));
+    return loop.run();
+}
+
+}  // namespace lamella::run

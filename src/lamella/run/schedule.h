@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+
+#include "lamella/scene/scene.h"
+
+namespace lamella::run {
+
+/// Whether `a` lies after `b` by more than rounding (1e-9 of b).
+bool is_after(double a, double b);
+
+/// A time at which something is written. Every such time gets a row of the series; some get a frame as well.
+struct OutputTime {
+    double time = 0.0;  ///< in the solver's time unit
+    bool frame = false;
+};
+
+/// The output times of a run: frames at k / frame_rate, rows at k / series_rate and at
+/// log_start * 10^(k / series_per_decade), both at 0 and at the end.
+///
+/// A pure function of its arguments, so that a resumed run looks at the same times as an uninterrupted one. Times are
+/// computed from k, never added up. Times of different rules that differ by no more than rounding (see is_after)
+/// are one; the frame's value stands.
+class Schedule {
+public:
+    /// @param options  the scene's [time]
+    /// @param until    ends the run here instead of at options.end; must be positive
+    /// @throws InputError  `until` is not positive and finite
+    explicit Schedule(const scene::TimeOptions& options, std::optional<double> until = std::nullopt);
+
+    /// The time the run ends; infinite when only the solver's own conditions end it.
+    double end() const { return end_; }
+
+    /// The first output time after `time` (which is itself an output time, or 0). At the end, and after it, the end.
+    OutputTime next(double time) const;
+
+private:
+    scene::TimeOptions options_;
+    double end_;
+};
+
+}  // namespace lamella::run
