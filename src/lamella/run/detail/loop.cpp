@@ -40,6 +40,7 @@ Loop::Loop(const RunFolder& folder,
       provenance_(folder.provenance(), scene, settings.device),
       series_(folder.series()) {
     record_.time_unit = solver_->time_unit();
+    settings_.on_begin(scene_);
     for (const std::string& text : provenance_.notes()) note(text);
 }
 

@@ -1,0 +1,66 @@
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "command_line.h"
+#include "commands.h"
+#include "output.h"
+
+#include "lamella/core/build_info.h"
+#include "lamella/core/error.h"
+#include "lamella/scene/scene.h"
+
+namespace lamella::app {
+namespace {
+
+void print_version(bool json) {
+    const BuildInfo build = build_info();
+    std::vector<std::string> solvers;
+    for (const sim::SolverEntry& entry : scene::all_solvers().entries()) solvers.push_back(entry.name);
+    if (json) {
+        const nlohmann::ordered_json object{{"version", build.version},   {"commit", build.commit},
+                                            {"compiler", build.compiler}, {"system", build.system},
+                                            {"flags", build.flags},       {"build_type", build.build_type},
+                                            {"libraries", build.libraries}, {"parts", build.parts},
+                                            {"solvers", solvers}};
+        print_result(object.dump(2) + "\n");
+        return;
+    }
+    print_result(fmt::format("lamella {} ({})\n", build.version, build.commit) +
+                 two_columns({{"solvers", fmt::format("{}", fmt::join(solvers, ", "))},
+                              {"parts", build.parts.empty() ? "none of the optional ones"
+                                                            : fmt::format("{}", fmt::join(build.parts, ", "))},
+                              {"built", fmt::format("{} with {} for {}", build.build_type, build.compiler, build.system)},
+                              {"flags", build.flags},
+                              {"libraries", fmt::format("{}", fmt::join(build.libraries, ", "))}}));
+}
+
+void add_later_command(CLI::App& app, const std::string& name, const std::string& summary) {
+    CLI::App* command = app.add_subcommand(name, summary + " (comes with a later version)");
+    command->allow_extras();
+    command->callback([name] {
+        throw InputError(fmt::format("`lamella {}` comes with a later version; `lamella plot` draws pictures of a run, "
+                                     "and its frames open in ParaView",
+                                     name));
+    });
+}
+
+}  // namespace
+
+void add_version_command(CLI::App& app) {
+    CLI::App* command = add_command(app, "version", "Show what this program is built from, and what is in it",
+                                    "  lamella version\n"
+                                    "  lamella version --json\n");
+    auto json = std::make_shared<bool>(false);
+    command->add_flag("--json", *json, "Print one JSON object");
+    command->callback([json] { print_version(*json); });
+}
+
+void add_later_commands(CLI::App& app) {
+    add_later_command(app, "render", "Render frames with ray tracing");
+    add_later_command(app, "view", "Show a run in the web browser");
+}
+
+}  // namespace lamella::app
