@@ -82,7 +82,7 @@ std::vector<std::string> compat_deviations(const scene::Scene& scene, const sim:
     if (used_group == nullptr || default_group == nullptr || used_group->table() == nullptr) return lines;
     for (const auto& [key, value] : *used_group->table()) {
         const sim::Node* standard = default_group->find(key);
-        if (standard != nullptr && standard->value != value.value)
+        if (standard != nullptr && sim::found_text(*standard) != sim::found_text(value))
             lines.push_back(fmt::format("{}.compat.{} = {} (default {})", scene.solver, key, sim::found_text(value),
                                         sim::found_text(*standard)));
     }
@@ -133,9 +133,10 @@ int supervise(const RunOptions& options,
               Work&& work) {
     catch_stop_signals();
     ProgressDisplay display(progress_style(options.progress));
-    run::RunSettings settings{.until = options.until,
-                              .existing = options.overwrite ? run::Existing::kOverwrite : run::Existing::kRefuse,
-                              .device = options.device};
+    run::RunSettings settings;
+    settings.until = options.until;
+    settings.existing = options.overwrite ? run::Existing::kOverwrite : run::Existing::kRefuse;
+    settings.device = options.device;
     settings.on_begin = [&](const scene::Scene& scene) { print_header(scene, registry, folder); };
     settings.stop_signal = stop_signal;
     settings.on_progress = [&](const run::RunProgress& progress) { display.show(progress); };

@@ -12,7 +12,8 @@ namespace lamella::measure {
 
 Histogram relative_size_histogram(std::span<const double> radii, double bin_width) {
     if (!(bin_width >= 1e-3)) throw InputError(fmt::format("a bin width of {} is too small", bin_width));
-    Histogram histogram{.bin_width = bin_width};
+    Histogram histogram;
+    histogram.bin_width = bin_width;
     if (radii.empty()) return histogram;
 
     const double mean =

@@ -99,7 +99,7 @@ void Provenance::Impl::take_over_sessions() {
     try {
         const ordered_json old = ordered_json::parse(io::read_file(path));
         for (const auto& entry : old.at("sessions")) {
-            ordered_json checked;  // the sums below must not trip over a damaged file
+            ordered_json checked = ordered_json::object();  // the sums below must not trip over a damaged file
             add_numbers(checked, entry.at("wall_seconds"));
             add_numbers(checked, entry.at("cpu_seconds"));
             static_cast<void>(entry.at("steps").get<std::int64_t>());

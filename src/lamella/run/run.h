@@ -24,7 +24,7 @@ struct RunProgress {
 
 /// How to run, beside what the scene says.
 struct RunSettings {
-    std::optional<double> until;              ///< stop at this time instead of the scene's end
+    std::optional<double> until = {};         ///< stop at this time instead of the scene's end
     Existing existing = Existing::kRefuse;    ///< what to do with a run that is in the folder
     std::string device = "cpu";               ///< recorded in run.json
     /// The input is right and the folder is taken; work begins.
@@ -33,7 +33,7 @@ struct RunSettings {
     std::function<int()> stop_signal = [] { return 0; };
     std::function<void(const RunProgress&)> on_progress = [](const RunProgress&) {};  ///< after every step
     LogSink log = [](LogLevel, std::string_view) {};  ///< gets what goes to log.txt
-    std::function<double()> wall_clock;       ///< seconds, for checkpoint intervals; empty: the system's steady clock
+    std::function<double()> wall_clock = {};  ///< seconds, for checkpoint intervals; empty: the system's steady clock
 };
 
 struct RunResult {

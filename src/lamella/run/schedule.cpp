@@ -23,7 +23,7 @@ double first_after(double time, double guess, Sequence&& sequence) {
     double k = std::max(0.0, std::floor(guess) - 1.0);
     while (!is_after(sequence(k), time)) {
         const double following = k + 1.0;
-        if (following == k) return kInfinity;  // 2^53 times have passed: the numbers end here
+        if (following == k) return kInfinity;  // beyond 2^53 outputs the numbers end: none is due any more
         k = following;
     }
     return sequence(k);
@@ -46,10 +46,16 @@ bool is_after(double a, double b) { return a > b + kSame * std::abs(b); }
 
 Schedule::Schedule(const scene::TimeOptions& options, std::optional<double> until)
     : options_(options), end_(options.end > 0.0 ? options.end : kInfinity) {
-    if (!until) return;
-    if (!(*until > 0.0 && std::isfinite(*until)))
-        throw InputError(fmt::format("the time to run until must be a positive number, not {}", *until));
-    end_ = *until;
+    if (until) {
+        if (!(*until > 0.0 && std::isfinite(*until)))
+            throw InputError(fmt::format("the time to run until must be a positive number, not {}", *until));
+        end_ = *until;
+    }
+    constexpr double kMostOutputs = 1e9;
+    const double fastest = std::max(options.frame_rate, options.series_rate);
+    if (std::isfinite(end_) && fastest * end_ > kMostOutputs)
+        throw InputError(fmt::format("a rate of {:g} per unit of time until time {:g} asks for more than {:g} outputs",
+                                     fastest, end_, kMostOutputs));
 }
 
 OutputTime Schedule::next(double time) const {

@@ -25,7 +25,7 @@ class Schedule {
 public:
     /// @param options  the scene's [time]
     /// @param until    ends the run here instead of at options.end; must be positive
-    /// @throws InputError  `until` is not positive and finite
+    /// @throws InputError  `until` is not positive and finite, or the rates ask for more than 1e9 outputs
     explicit Schedule(const scene::TimeOptions& options, std::optional<double> until = std::nullopt);
 
     /// The time the run ends; infinite when only the solver's own conditions end it.
