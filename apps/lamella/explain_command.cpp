@@ -48,9 +48,9 @@ bool is_group(const OptionInfo& option) { return option.type == "group"; }
 
 std::string facts(const OptionInfo& option) {
     std::string text = option.type;
-    if (option.doc.unit != "-") text += " [" + option.doc.unit + "]";
-    if (!option.allowed.empty()) text += ", " + option.allowed;
-    if (!option.default_text.empty()) text += ", default " + option.default_text;
+    if (option.doc.unit != "-") text += fmt::format(" [{}]", option.doc.unit);
+    if (!option.allowed.empty()) text += fmt::format(", {}", option.allowed);
+    if (!option.default_text.empty()) text += fmt::format(", default {}", option.default_text);
     return text;
 }
 
@@ -63,7 +63,7 @@ std::string option_text(const std::string& topic, const OptionInfo& option) {
 
 std::string markdown_table(const Topic& topic) {
     const auto cell = [](std::string text) {  // a bar would end the cell
-        for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+        for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, 1, '\\');
         return text;
     };
     std::string text = "| option | default | allowed | unit | meaning | source |\n|---|---|---|---|---|---|\n";

@@ -50,7 +50,7 @@ std::string two_columns(const std::vector<std::pair<std::string, std::string>>& 
         std::istringstream words(right);
         for (std::string word; words >> word;) {
             if (column > 0 && column + 1 + word.size() > room) {
-                text += "\n" + std::string(indent, ' ');
+                text.append(1, '\n').append(indent, ' ');
                 column = 0;
             }
             if (column > 0) text += ' ';

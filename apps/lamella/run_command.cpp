@@ -66,17 +66,23 @@ std::string default_folder(const std::filesystem::path& scene) {
     return (std::filesystem::path("runs") / scene.stem()).string();
 }
 
+sim::Node empty_table() {
+    sim::Node node;
+    node.value = sim::Node::Table{};
+    return node;
+}
+
 /// The scene's options of its own solver; an empty table where it gives none.
 sim::Node solver_options(const scene::Scene& scene) {
     const sim::Node* node = scene.root.find(scene.solver);
-    return node != nullptr ? *node : sim::Node{.value = sim::Node::Table{}, .where = {}, .path = scene.solver};
+    return node != nullptr ? *node : empty_table();
 }
 
 /// Every option of the group compat that is not at its default: a run that deviates from the right physics says so.
 std::vector<std::string> compat_deviations(const scene::Scene& scene, const sim::SolverEntry& entry) {
     std::vector<std::string> lines;
     const sim::Node used = entry.resolve(solver_options(scene));
-    const sim::Node defaults = entry.resolve(sim::Node{.value = sim::Node::Table{}, .where = {}, .path = scene.solver});
+    const sim::Node defaults = entry.resolve(empty_table());
     const sim::Node* used_group = used.find("compat");
     const sim::Node* default_group = defaults.find("compat");
     if (used_group == nullptr || default_group == nullptr || used_group->table() == nullptr) return lines;

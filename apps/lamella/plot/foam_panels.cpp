@@ -61,7 +61,7 @@ std::string curves_by_time(const std::vector<std::string>& data, const std::vect
     for (std::size_t k = 0; k < data.size(); ++k) {
         const double place = data.size() > 1 ? static_cast<double>(k) / static_cast<double>(data.size() - 1) : 0.0;
         script += fmt::format("{}{} using 1:2 with lines lw 1.2 lc rgb '{}' title {}", k == 0 ? "" : ", ", data[k],
-                              color_text(map_color(0.9 * place)), quoted(fmt::format("τ = {:.3g}", times[k])));
+                              color_text(map_color(0.9 * place)), gnuplot_text(fmt::format("τ = {:.3g}", times[k])));
     }
     return script + "\n";
 }
@@ -255,7 +255,7 @@ std::vector<Panel> series_panels(Gnuplot& gnuplot, const io::CsvTable& series) {
         const std::string time_label = series.header[static_cast<std::size_t>(series.column("time"))];
         std::string script = panel_style() + "unset key\n";
         script += fmt::format("set xlabel {} noenhanced\nset title {} noenhanced\n",
-                              quoted(time_label.ends_with("[-]") ? "time" : time_label), quoted(label));
+                              gnuplot_text(time_label.ends_with("[-]") ? "time" : time_label), gnuplot_text(label));
         script += fmt::format("plot {} with lines lw 1.2 lc rgb '{}'\n", gnuplot.data({*time, values}), kPurple);
         panels.push_back({name, script});
     }

@@ -88,7 +88,7 @@ std::string Gnuplot::data(const Columns& columns) {
     }
     if (rows == 0) text.append(std::string_view("NaN NaN NaN NaN\n"));  // gnuplot refuses an empty file
     io::write_file_atomically(path, {text.data(), text.size()});
-    return quoted(path.string());
+    return gnuplot_text(path.string());
 }
 
 void Gnuplot::draw(const std::string& script, const fs::path& picture, int width, int height) {
@@ -96,13 +96,13 @@ void Gnuplot::draw(const std::string& script, const fs::path& picture, int width
     const fs::path script_file = folder_ / "script.gp";
     const fs::path messages = folder_ / "messages.txt";
     io::write_file_atomically(script_file, "set encoding utf8\n" + terminal(picture, width, height) + "set output " +
-                                               quoted(drawn.string()) + "\n" + script + "\nunset output\n");
+                                               gnuplot_text(drawn.string()) + "\n" + script + "\nunset output\n");
     if (run_gnuplot(script_file, messages) != 0 || !fs::exists(drawn))
         throw IoError(fmt::format("gnuplot could not draw {}: {}", picture.string(), last_message(messages)));
     io::write_file_atomically(picture, io::read_file(drawn));
 }
 
-std::string quoted(const std::string& text) {
+std::string gnuplot_text(const std::string& text) {
     std::string result = "'";
     for (const char c : text) {
         if (c == '\'') result += '\'';  // doubled: the only escape inside single quotes

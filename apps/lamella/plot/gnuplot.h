@@ -37,6 +37,6 @@ private:
 };
 
 /// A text as a gnuplot string without any special meaning.
-std::string quoted(const std::string& text);
+std::string gnuplot_text(const std::string& text);
 
 }  // namespace lamella::app

@@ -201,7 +201,7 @@ std::string box_edges(Gnuplot& gnuplot, const sim::Box& box, const Projection& v
 
 std::string color_bar(const ColorScale& scale) {
     std::string text = fmt::format("set cbrange [{:.9g}:{:.9g}]\nset cblabel {} offset 0.5,0\n", scale.low, scale.high,
-                                   quoted(scale.label));
+                                   gnuplot_text(scale.label));
     text += "set colorbox border lc rgb '#333333'\nset cbtics scale 0.5\n";
     if (scale.logarithmic) text += "set logscale cb\nset format cb '10^{%L}'\nset cbtics 10\n";
     return text;
@@ -231,7 +231,7 @@ Panel flat_panel(Gnuplot& gnuplot, const sim::Frame& frame, const ColorScale& sc
     std::string script = panel_style() + color_bar(scale);
     script += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\nset size ratio -1\n", box.origin[0],
                           box.origin[0] + box.lengths[0], box.origin[1], box.origin[1] + box.lengths[1]);
-    script += fmt::format("set title {} noenhanced offset 0,-0.4\n", quoted(caption(frame)));
+    script += fmt::format("set title {} noenhanced offset 0,-0.4\n", gnuplot_text(caption(frame)));
     script += "set tics out\nset xlabel '{/:Italic x}'\nset ylabel '{/:Italic y}'\nset border front\nunset key\n";
     script += fmt::format("plot {} using 1:2:3:4 with circles lc rgb variable fs solid 1 {}, "
                           "NaN with points palette\n",
@@ -243,7 +243,7 @@ Panel projected_panel(Gnuplot& gnuplot, const sim::Frame& frame, const ColorScal
     const Projection view = Projection::oblique();
     const std::vector<Circle> circles = lit_balls(ball_circles(frame, scale, view));
     std::string script = panel_style() + color_bar(scale);
-    script += fmt::format("set title {} noenhanced offset 0,-0.4\n", quoted(caption(frame)));
+    script += fmt::format("set title {} noenhanced offset 0,-0.4\n", gnuplot_text(caption(frame)));
     script += "set size ratio -1\nunset border\nunset tics\nset cbtics\nunset key\nset offsets graph 0.03,0.03,0.03,0.03\n";
     const std::string line = "using 1:2 with lines lc rgb '#555555' lw 0.6";
     script += fmt::format("plot {} {}, {} using 1:2:3:4 with circles lc rgb variable fs solid 1 noborder, {} {}, "
