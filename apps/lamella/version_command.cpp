@@ -18,7 +18,8 @@ namespace {
 void print_version(bool json) {
     const BuildInfo build = build_info();
     std::vector<std::string> solvers;
-    for (const sim::SolverEntry& entry : scene::all_solvers().entries()) solvers.push_back(entry.name);
+    const sim::SolverRegistry registry = scene::all_solvers();
+    for (const sim::SolverEntry& entry : registry.entries()) solvers.push_back(entry.name);
     if (json) {
         const nlohmann::ordered_json object{{"version", build.version},   {"commit", build.commit},
                                             {"compiler", build.compiler}, {"system", build.system},
