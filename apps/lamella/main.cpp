@@ -42,7 +42,7 @@ int run_program(int argc, char** argv) {
         program.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
         const std::vector<CLI::App*> called = program.get_subcommands();
-        app::print_result((called.empty() ? &program : called.front())->help());
+        app::print_result(called.empty() ? program.help() : called.front()->help("lamella"));
     } catch (const CLI::ParseError& error) {
         app::print_error(app::misuse_text(program, error, {argv + 1, argv + argc}));
         return app::kWrongInput;

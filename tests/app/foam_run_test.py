@@ -10,6 +10,10 @@ import unittest
 from program import ProgramTest, lamella, results
 
 
+def read_series(folder):
+    return list(csv.DictReader(io.StringIO((folder / "series.csv").read_text())))
+
+
 class FoamRun(ProgramTest):
 
     def run_foam(self, name="run", *arguments):
@@ -32,7 +36,7 @@ class FoamRun(ProgramTest):
         self.assertEqual(record["seed"], 5)
         self.assertRegex(record["start"], r"^\d{4}-\d\d-\d\dT")
 
-        rows = list(csv.DictReader((folder / "series.csv").open()))
+        rows = read_series(folder)
         self.assertEqual([float(row["time[-]"]) for row in rows], [k / 20 for k in range(81)])
         self.assertLess(abs(float(rows[-1]["volume_error[-]"])), 1e-12)
         self.assertLess(float(rows[-1]["bubbles[-]"]), float(rows[0]["bubbles[-]"]))
@@ -55,7 +59,7 @@ class FoamRun(ProgramTest):
         self.assertAlmostEqual(measured["gas_fraction"], 0.95, places=12)
         self.assertIn("total", measured["energy"])
         self.assertIn("xy", measured["stress"])
-        last = list(csv.DictReader((folder / "series.csv").open()))[-1]
+        last = read_series(folder)[-1]
         self.assertTrue(math.isclose(measured["exponent"], float(last["exponent[-]"])))
         self.assertEqual(measured["mean_radius"], float(last["mean_radius[-]"]))
 

@@ -202,7 +202,7 @@ std::string box_edges(Gnuplot& gnuplot, const sim::Box& box, const Projection& v
 std::string color_bar(const ColorScale& scale) {
     std::string text = fmt::format("set cbrange [{:.9g}:{:.9g}]\nset cblabel {} offset 0.5,0\n", scale.low, scale.high,
                                    gnuplot_text(scale.label));
-    text += "set colorbox border lc rgb '#333333'\nset cbtics scale 0.5\n";
+    text += "set cbtics scale 0.5\n";
     if (scale.logarithmic) text += "set logscale cb\nset format cb '10^{%L}'\nset cbtics 10\n";
     return text;
 }
@@ -226,14 +226,14 @@ Panel flat_panel(Gnuplot& gnuplot, const sim::Frame& frame, const ColorScale& sc
     // Rims tell touching discs apart, where discs are large enough to have one.
     constexpr std::size_t kMostWithRims = 20000;
     const std::string rim = circles.size() <= kMostWithRims
-                                ? fmt::format("border lc rgb '#202020' lw {:.2g}", circles.size() < 3000 ? 0.5 : 0.25)
-                                : "noborder";
+                                ? fmt::format("lw {:.2g} fs solid 1 border lc rgb '#202020'", circles.size() < 3000 ? 0.5 : 0.25)
+                                : "fs solid 1 noborder";
     std::string script = panel_style() + color_bar(scale);
     script += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\nset size ratio -1\n", box.origin[0],
                           box.origin[0] + box.lengths[0], box.origin[1], box.origin[1] + box.lengths[1]);
     script += fmt::format("set title {} noenhanced offset 0,-0.4\n", gnuplot_text(caption(frame)));
     script += "set tics out\nset xlabel '{/:Italic x}'\nset ylabel '{/:Italic y}'\nset border front\nunset key\n";
-    script += fmt::format("plot {} using 1:2:3:4 with circles lc rgb variable fs solid 1 {}, "
+    script += fmt::format("plot {} using 1:2:3:4 with circles lc rgb variable {}, "
                           "NaN with points palette\n",
                           circle_data(gnuplot, circles), rim);
     return {"snapshot", script, 1.15 * std::min(2.0, box.lengths[0] / box.lengths[1])};
