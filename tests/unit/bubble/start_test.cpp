@@ -131,5 +131,10 @@ TEST(CubeRoot, IsExactToTwoUnitsInTheLastPlace) {
     for (double a = 1e-12; a < 1e12; a *= 1.37) EXPECT_NEAR(cube_root(a) / std::cbrt(a), 1.0, 4.5e-16) << a;
 }
 
+TEST(Shape, GivesAVanishedBubbleNoRadius) {
+    EXPECT_EQ(Shape<2>::radius(0.0), 0.0);
+    EXPECT_EQ(Shape<3>::radius(0.0), 0.0);
+}
+
 }  // namespace
 }  // namespace lamella::bubble

@@ -187,11 +187,20 @@ std::optional<std::string> BubbleSolver<D>::stop_reason() const {
     return std::nullopt;
 }
 
+/// Work goes roughly with the logarithm of time: as the foam coarsens there are fewer bubbles and longer steps. The
+/// time at which end_count is reached follows from N ~ (1 + tau/tau_c)^-0.9, with tau_c from the foam itself once
+/// enough bubbles have vanished. Only the progress display rests on this.
 template <int D>
 std::optional<double> BubbleSolver<D>::progress() const {
-    if (!system_->model.exchanges_gas() || start_count_ <= options_.end_count) return std::nullopt;
-    const auto ratio = [&](double n) { return std::log(static_cast<double>(start_count_) / n); };
-    return ratio(static_cast<double>(system_->foam.live)) / ratio(options_.end_count);
+    constexpr double kDecay = 1.0 / 0.9;
+    constexpr double kEarly = 0.6;
+    const auto start = static_cast<double>(start_count_);
+    if (!system_->model.exchanges_gas() || start <= options_.end_count) return std::nullopt;
+    const double tau = mechanical_time_ * system_->model.scaled_time_rate();
+    const double shrunk = start / static_cast<double>(system_->foam.live);
+    const double crossover = shrunk > 1.1 ? tau / (std::pow(shrunk, kDecay) - 1.0) : 2.5;
+    const double end = crossover * (std::pow(start / options_.end_count, kDecay) - 1.0);
+    return std::min(0.99, std::log1p(tau / kEarly) / std::log1p(end / kEarly));
 }
 
 template <int D>

@@ -46,7 +46,7 @@ template <>
 struct Shape<3> {
     static constexpr double kVolume = 4.0 / 3.0 * std::numbers::pi;
     static constexpr double kSurface = 4.0 * std::numbers::pi;
-    LAMELLA_HOST_DEVICE static double radius(double q) { return cube_root(q); }
+    LAMELLA_HOST_DEVICE static double radius(double q) { return q > 0.0 ? cube_root(q) : 0.0; }
     LAMELLA_HOST_DEVICE static double size(double r) { return r * r * r; }
     template <class Real>
     LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE static Real surface(const Real& r) {
