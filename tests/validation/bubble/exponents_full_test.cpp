@@ -58,7 +58,7 @@ TEST(Exponents, RiseWithTheGasFractionFromOneThirdToOneHalf) {
 }
 
 Options dilute(int dimension, MediumScaling scaling) {
-    Options o = coarsening(dimension, 60'000, 0.02);
+    Options o = coarsening(dimension, 20'000, 0.02);
     o.gas.medium_scaling = scaling;
     return o;
 }
@@ -75,7 +75,7 @@ TEST(Exponents, OfADiluteFoamFollowTheScalingOfTheMedium) {
                          Case{3, MediumScaling::kRadius, 1.0 / 3.0, "3D radius"},
                          Case{3, MediumScaling::kLsw, 1.0 / 3.0, "3D lsw"}}) {
         const Options o = dilute(c.dimension, c.scaling);
-        const auto list = c.dimension == 2 ? history<2>(o, 400.0, 3200.0, 12) : history<3>(o, 400.0, 3200.0, 12);
+        const auto list = c.dimension == 2 ? history<2>(o, 200.0, 1600.0, 12) : history<3>(o, 200.0, 1600.0, 12);
         const double alpha = exponent(list);
         std::printf("%s: alpha = %.4f\n", c.name, alpha);
         EXPECT_NEAR(alpha, c.alpha, 0.03) << c.name;
