@@ -220,6 +220,23 @@ void check(const sim::Frame& frame) {
     if (!frame.box) throw InputError("the frame has no box to draw the bubbles in");
 }
 
+bool within(const sim::Box& box, const Circle& circle) {
+    const double x = circle.x - box.origin[0];
+    const double y = circle.y - box.origin[1];
+    return x >= 0.0 && x <= box.lengths[0] && y >= 0.0 && y <= box.lengths[1];
+}
+
+/// gnuplot draws no circle of a plot whose center lies outside the axes; circles that are objects it does, and cuts
+/// them off at the border.
+std::string overhanging_circles(const sim::Box& box, const std::vector<Circle>& circles, const std::string& rim) {
+    std::string script;
+    for (const Circle& circle : circles)
+        if (!within(box, circle))
+            script += fmt::format("set object circle at {:.9g},{:.9g} size first {:.9g} fc rgb '#{:06x}' {} clip back\n",
+                                  circle.x, circle.y, circle.radius, static_cast<unsigned>(circle.color), rim);
+    return script;
+}
+
 Panel flat_panel(Gnuplot& gnuplot, const sim::Frame& frame, const ColorScale& scale) {
     const sim::Box& box = *frame.box;
     const std::vector<Circle> circles = flat_circles(frame, scale);
@@ -231,6 +248,7 @@ Panel flat_panel(Gnuplot& gnuplot, const sim::Frame& frame, const ColorScale& sc
     std::string script = panel_style() + color_bar(scale);
     script += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\nset size ratio -1\n", box.origin[0],
                           box.origin[0] + box.lengths[0], box.origin[1], box.origin[1] + box.lengths[1]);
+    script += overhanging_circles(box, circles, rim);
     script += fmt::format("set title {} noenhanced offset 0,-0.4\n", gnuplot_text(caption(frame)));
     script += "set tics out\nset xlabel '{/:Italic x}'\nset ylabel '{/:Italic y}'\nset border front\nunset key\n";
     script += fmt::format("plot {} using 1:2:3:4 with circles lc rgb variable {}, "
