@@ -1,6 +1,5 @@
-#include <memory>
-#include <string>
-#include <vector>
+#include "lamella/scene/scene.h"
+#include "lamella/scene/shipped.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -8,9 +7,9 @@
 #include "command_line.h"
 #include "commands.h"
 #include "output.h"
-
-#include "lamella/scene/scene.h"
-#include "lamella/scene/shipped.h"
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace lamella::app {
 namespace {
@@ -48,9 +47,9 @@ std::string report_json(const scene::Scene& scene,
     nlohmann::ordered_json values = nlohmann::ordered_json::object();
     for (const sim::Scalar& number : numbers)
         values[number.name] = {{"value", number.value}, {"unit", number.unit}, {"text", number.text}};
-    const nlohmann::ordered_json object{{"file", scene.file},   {"title", scene.title},
+    const nlohmann::ordered_json object{{"file", scene.file},     {"title", scene.title},
                                         {"solver", scene.solver}, {"seed", scene.seed},
-                                        {"notes", scene.notes}, {"characteristic_numbers", values},
+                                        {"notes", scene.notes},   {"characteristic_numbers", values},
                                         {"resolved", resolved}};
     return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

@@ -1,10 +1,10 @@
 #include "command_line.h"
 
-#include <algorithm>
+#include "lamella/core/nearest_word.h"
 
 #include <fmt/format.h>
 
-#include "lamella/core/nearest_word.h"
+#include <algorithm>
 
 namespace lamella::app {
 namespace {
@@ -46,10 +46,7 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-CLI::App* add_command(CLI::App& app,
-                      const std::string& name,
-                      const std::string& summary,
-                      const std::string& examples) {
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& summary, const std::string& examples) {
     CLI::App* command = app.add_subcommand(name, summary);
     command->footer("Examples:\n" + examples);
     return command;

@@ -1,7 +1,7 @@
-#include <algorithm>
-#include <memory>
-#include <string>
-#include <vector>
+#include "lamella/core/error.h"
+#include "lamella/core/nearest_word.h"
+#include "lamella/scene/scene.h"
+#include "lamella/sim/read_options.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,11 +9,10 @@
 #include "command_line.h"
 #include "commands.h"
 #include "output.h"
-
-#include "lamella/core/error.h"
-#include "lamella/core/nearest_word.h"
-#include "lamella/scene/scene.h"
-#include "lamella/sim/read_options.h"
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace lamella::app {
 namespace {
@@ -78,8 +77,8 @@ std::string markdown_table(const Topic& topic) {
 }
 
 nlohmann::ordered_json option_json(const std::string& topic, const OptionInfo& option) {
-    return {{"name", topic + "." + option.name}, {"type", option.type},       {"default", option.default_text},
-            {"allowed", option.allowed},         {"unit", option.doc.unit},   {"text", option.doc.text},
+    return {{"name", topic + "." + option.name}, {"type", option.type},     {"default", option.default_text},
+            {"allowed", option.allowed},         {"unit", option.doc.unit}, {"text", option.doc.text},
             {"source", option.doc.source}};
 }
 
@@ -116,8 +115,8 @@ std::vector<OptionInfo> select_options(const Topic& topic, const std::string& pa
     }
     if (!selected.empty()) return selected;
     // A bare option name ("medium_ratio" for "gas.medium_ratio") is meant more often than it is mistyped.
-    const auto same_leaf = std::find_if(names.begin(), names.end(),
-                                        [&](const std::string& name) { return name.ends_with("." + path); });
+    const auto same_leaf =
+        std::find_if(names.begin(), names.end(), [&](const std::string& name) { return name.ends_with("." + path); });
     const auto near = same_leaf != names.end() ? std::optional(*same_leaf) : nearest_word(path, names);
     throw InputError(fmt::format("{} has no option {}{}; `lamella explain {}` lists them", topic.name, path,
                                  near ? fmt::format("; did you mean {}.{}?", topic.name, *near) : "", topic.name));

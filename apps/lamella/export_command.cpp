@@ -1,7 +1,6 @@
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
+#include "lamella/core/error.h"
+#include "lamella/core/nearest_word.h"
+#include "lamella/io/atomic_file.h"
 
 #include <fmt/format.h>
 
@@ -9,10 +8,10 @@
 #include "commands.h"
 #include "frame_source.h"
 #include "output.h"
-
-#include "lamella/core/error.h"
-#include "lamella/core/nearest_word.h"
-#include "lamella/io/atomic_file.h"
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace lamella::app {
 namespace {
@@ -98,8 +97,9 @@ void add_export_command(CLI::App& app) {
     command->add_option("run", options->run, "Run folder")->required()->type_name("RUN");
     command->add_option("--to", options->format, "Format of the files: see below")->required()->type_name("FORMAT");
     command->add_option("--frame", options->frame, "A number, last or all")->type_name("N|last|all");
-    command->add_option("--out", options->out,
-                        "File for one frame (-: standard output), folder for all; by default RUN/export")
+    command
+        ->add_option("--out", options->out,
+                     "File for one frame (-: standard output), folder for all; by default RUN/export")
         ->type_name("PATH");
     command->callback([options] {
         try {

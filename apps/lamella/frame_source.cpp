@@ -1,11 +1,11 @@
 #include "frame_source.h"
 
-#include <charconv>
+#include "lamella/core/error.h"
+#include "lamella/run/run_folder.h"
 
 #include <fmt/format.h>
 
-#include "lamella/core/error.h"
-#include "lamella/run/run_folder.h"
+#include <charconv>
 
 namespace lamella::app {
 

@@ -1,14 +1,14 @@
 #pragma once
 
+#include "lamella/io/csv.h"
+#include "lamella/io/frame_files.h"
+#include "lamella/sim/frame.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "lamella/io/csv.h"
-#include "lamella/io/frame_files.h"
-#include "lamella/sim/frame.h"
 
 namespace lamella::app {
 

@@ -1,13 +1,12 @@
-#include <memory>
-#include <string>
+#include "lamella/scene/import.h"
 
 #include <fmt/format.h>
 
 #include "command_line.h"
 #include "commands.h"
 #include "output.h"
-
-#include "lamella/scene/import.h"
+#include <memory>
+#include <string>
 
 namespace lamella::app {
 

@@ -1,16 +1,15 @@
-#include <csignal>
-#include <exception>
-#include <new>
-#include <string>
-#include <vector>
+#include "lamella/core/error.h"
 
 #include <CLI/CLI.hpp>
 
 #include "command_line.h"
 #include "commands.h"
 #include "output.h"
-
-#include "lamella/core/error.h"
+#include <csignal>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
 
 namespace {
 

@@ -1,8 +1,5 @@
-#include <filesystem>
-#include <limits>
-#include <memory>
-#include <string>
-#include <vector>
+#include "lamella/core/error.h"
+#include "lamella/measure/measure.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,9 +8,11 @@
 #include "commands.h"
 #include "frame_source.h"
 #include "output.h"
-
-#include "lamella/core/error.h"
-#include "lamella/measure/measure.h"
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace lamella::app {
 namespace {

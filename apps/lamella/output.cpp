@@ -1,5 +1,10 @@
 #include "output.h"
 
+#include "lamella/core/error.h"
+#include "lamella/io/atomic_file.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -7,18 +12,12 @@
 #include <cstring>
 #include <sstream>
 
-#include <fmt/format.h>
-
-#include "lamella/core/error.h"
-#include "lamella/io/atomic_file.h"
-
 namespace lamella::app {
 
 void print_result(std::string_view text) {
     errno = 0;
     const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-    if (!written && errno != EPIPE)
-        throw IoError(fmt::format("standard output: {}", std::strerror(errno)));
+    if (!written && errno != EPIPE) throw IoError(fmt::format("standard output: {}", std::strerror(errno)));
 }
 
 void write_result(const std::string& path, const std::function<void(std::ostream&)>& write) {

@@ -1,10 +1,5 @@
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
+#include "lamella/core/error.h"
+#include "lamella/core/nearest_word.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,9 +11,13 @@
 #include "plot/foam_panels.h"
 #include "plot/gnuplot.h"
 #include "plot/snapshot.h"
-
-#include "lamella/core/error.h"
-#include "lamella/core/nearest_word.h"
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace lamella::app {
 namespace {
@@ -149,15 +148,18 @@ void plot(const PlotOptions& options) {
 }  // namespace
 
 void add_plot_command(CLI::App& app) {
-    CLI::App* command = add_command(app, "plot", "Draw the series and the frames of a run (needs gnuplot)",
-                                    "  lamella plot foam                                  every picture, in foam/plots\n"
-                                    "  lamella plot foam --out foam.svg                   the main ones in one picture\n"
-                                    "  lamella plot foam --panel snapshot --frame 10 --color energy --out e.png\n");
+    CLI::App* command =
+        add_command(app, "plot", "Draw the series and the frames of a run (needs gnuplot)",
+                    "  lamella plot foam                                  every picture, in foam/plots\n"
+                    "  lamella plot foam --out foam.svg                   the main ones in one picture\n"
+                    "  lamella plot foam --panel snapshot --frame 10 --color energy --out e.png\n");
     auto options = std::make_shared<PlotOptions>();
     command->add_option("run", options->run, "Run folder")->required()->type_name("RUN");
     command->add_option("--out", options->out, "One picture with the main panels; by default RUN/plots/*.png")
         ->type_name("FILE.png|.svg");
-    command->add_option("--panel", options->panel, "Only this one: growth, energy, avalanches, bubbles, sizes, gas_fraction, snapshot")
+    command
+        ->add_option("--panel", options->panel,
+                     "Only this one: growth, energy, avalanches, bubbles, sizes, gas_fraction, snapshot")
         ->type_name("NAME");
     command->add_option("--frame", options->frame, "Frame of the snapshot: a number or last")->type_name("N|last");
     command->add_option("--color", options->color, "What colors its bubbles: radius, energy or displacement")

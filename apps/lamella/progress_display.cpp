@@ -1,21 +1,18 @@
 #include "progress_display.h"
 
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
-#include <fmt/format.h>
-
 namespace lamella::app {
 namespace {
 
-double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::size_t terminal_width() {
     winsize size{};
@@ -73,8 +70,8 @@ void ProgressDisplay::draw_bar(const run::RunProgress& progress) const {
     const std::size_t width = terminal_width() - 1;
     if (progress.fraction && width > line.size() + 12) {
         const std::size_t room = std::min<std::size_t>(width - line.size() - 3, 40);
-        const auto filled = static_cast<std::size_t>(std::clamp(*progress.fraction, 0.0, 1.0) *
-                                                     static_cast<double>(room));
+        const auto filled =
+            static_cast<std::size_t>(std::clamp(*progress.fraction, 0.0, 1.0) * static_cast<double>(room));
         line = fmt::format("[{}{}] {}", std::string(filled, '#'), std::string(room - filled, '.'), line);
     }
     fmt::print(stderr, "\r{}\x1b[K", line.substr(0, width));

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <string>
-
 #include "lamella/core/progress.h"
 #include "lamella/run/run.h"
+
+#include <string>
 
 namespace lamella::app {
 

@@ -1,20 +1,3 @@
-#include <chrono>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <unistd.h>
-
-#include <fmt/format.h>
-
-#include "command_line.h"
-#include "commands.h"
-#include "output.h"
-#include "progress_display.h"
-#include "signals.h"
-
 #include "lamella/core/build_info.h"
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
@@ -22,6 +5,21 @@
 #include "lamella/run/run.h"
 #include "lamella/scene/scene.h"
 #include "lamella/scene/shipped.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "command_line.h"
+#include "commands.h"
+#include "output.h"
+#include "progress_display.h"
+#include "signals.h"
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace lamella::app {
 namespace {
@@ -45,7 +43,8 @@ void add_common_options(CLI::App& command, RunOptions& options) {
     command.add_option("--device", options.device, "Where to compute: cpu or cuda")
         ->check(CLI::IsMember({"cpu", "cuda"}))
         ->type_name("DEVICE");
-    command.add_option("--progress", options.progress, "bar, plain or none; by default a bar on a terminal, else plain")
+    command
+        .add_option("--progress", options.progress, "bar, plain or none; by default a bar on a terminal, else plain")
         ->check(CLI::IsMember({"bar", "plain", "none"}))
         ->type_name("STYLE");
 }
@@ -113,7 +112,8 @@ void print_header(const scene::Scene& scene, const sim::SolverRegistry& registry
 }
 
 void print_summary(const run::RunResult& result, const std::string& folder, double seconds) {
-    const std::string time = fmt::format("{:.6g}{}", result.time, result.time_unit == "-" ? "" : " " + result.time_unit);
+    const std::string time =
+        fmt::format("{:.6g}{}", result.time, result.time_unit == "-" ? "" : " " + result.time_unit);
     if (!result.finished) {
         fmt::print(stderr,
                    "Stopped at time {0}, step {1}, after {2}; a checkpoint was written.\n"
@@ -126,17 +126,15 @@ void print_summary(const run::RunResult& result, const std::string& folder, doub
     else
         fmt::print(stderr, "Done in {}: {} (time {}, {} steps).\n", duration_text(seconds), result.stop_reason, time,
                    result.step);
-    fmt::print(stderr, "{0}/series.csv has the series, {0}/frames.pvd the {1} frames (ParaView); `lamella plot {0}` "
-                       "draws them.\n",
+    fmt::print(stderr,
+               "{0}/series.csv has the series, {0}/frames.pvd the {1} frames (ParaView); `lamella plot {0}` "
+               "draws them.\n",
                folder, result.frames);
 }
 
 /// Runs `work` with threads, signals and progress set up; returns the exit code.
 template <class Work>
-int supervise(const RunOptions& options,
-              const std::string& folder,
-              const sim::SolverRegistry& registry,
-              Work&& work) {
+int supervise(const RunOptions& options, const std::string& folder, const sim::SolverRegistry& registry, Work&& work) {
     catch_stop_signals();
     ProgressDisplay display(progress_style(options.progress));
     run::RunSettings settings;
@@ -185,10 +183,11 @@ int resume_command(const RunOptions& options) {
 
 void add_run_commands(CLI::App& app, int& exit_code) {
     auto options = std::make_shared<RunOptions>();
-    CLI::App* run = add_command(app, "run", "Run a scene",
-                                "  lamella run bubble/coarsening-2d-small\n"
-                                "  lamella run my-foam.toml --out foam --until 50 --threads 2\n"
-                                "  lamella run bubble/coarsening-2d --set bubble.gas_fraction=0.9 --out wet --overwrite\n");
+    CLI::App* run =
+        add_command(app, "run", "Run a scene",
+                    "  lamella run bubble/coarsening-2d-small\n"
+                    "  lamella run my-foam.toml --out foam --until 50 --threads 2\n"
+                    "  lamella run bubble/coarsening-2d --set bubble.gas_fraction=0.9 --out wet --overwrite\n");
     run->add_option("scene", options->scene, "Scene file, or the name of a shipped scene")
         ->required()
         ->type_name("SCENE");

@@ -1,5 +1,6 @@
-#include <memory>
-#include <string>
+#include "lamella/core/error.h"
+#include "lamella/io/atomic_file.h"
+#include "lamella/scene/shipped.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -7,10 +8,8 @@
 #include "command_line.h"
 #include "commands.h"
 #include "output.h"
-
-#include "lamella/core/error.h"
-#include "lamella/io/atomic_file.h"
-#include "lamella/scene/shipped.h"
+#include <memory>
+#include <string>
 
 namespace lamella::app {
 namespace {

@@ -1,8 +1,8 @@
 #include "signals.h"
 
-#include <csignal>
-
 #include <unistd.h>
+
+#include <csignal>
 
 namespace lamella::app {
 namespace {

@@ -1,4 +1,6 @@
-#include <string>
+#include "lamella/core/build_info.h"
+#include "lamella/core/error.h"
+#include "lamella/scene/scene.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,10 +9,7 @@
 #include "command_line.h"
 #include "commands.h"
 #include "output.h"
-
-#include "lamella/core/build_info.h"
-#include "lamella/core/error.h"
-#include "lamella/scene/scene.h"
+#include <string>
 
 namespace lamella::app {
 namespace {
@@ -21,30 +20,31 @@ void print_version(bool json) {
     const sim::SolverRegistry registry = scene::all_solvers();
     for (const sim::SolverEntry& entry : registry.entries()) solvers.push_back(entry.name);
     if (json) {
-        const nlohmann::ordered_json object{{"version", build.version},   {"commit", build.commit},
-                                            {"compiler", build.compiler}, {"system", build.system},
-                                            {"flags", build.flags},       {"build_type", build.build_type},
-                                            {"libraries", build.libraries}, {"parts", build.parts},
-                                            {"solvers", solvers}};
+        const nlohmann::ordered_json object{
+            {"version", build.version},     {"commit", build.commit}, {"compiler", build.compiler},
+            {"system", build.system},       {"flags", build.flags},   {"build_type", build.build_type},
+            {"libraries", build.libraries}, {"parts", build.parts},   {"solvers", solvers}};
         print_result(object.dump(2) + "\n");
         return;
     }
-    print_result(fmt::format("lamella {} ({})\n", build.version, build.commit) +
-                 two_columns({{"solvers", fmt::format("{}", fmt::join(solvers, ", "))},
-                              {"parts", build.parts.empty() ? "none of the optional ones"
-                                                            : fmt::format("{}", fmt::join(build.parts, ", "))},
-                              {"built", fmt::format("{} with {} for {}", build.build_type, build.compiler, build.system)},
-                              {"flags", build.flags},
-                              {"libraries", fmt::format("{}", fmt::join(build.libraries, ", "))}}));
+    print_result(
+        fmt::format("lamella {} ({})\n", build.version, build.commit) +
+        two_columns({{"solvers", fmt::format("{}", fmt::join(solvers, ", "))},
+                     {"parts", build.parts.empty() ? "none of the optional ones"
+                                                   : fmt::format("{}", fmt::join(build.parts, ", "))},
+                     {"built", fmt::format("{} with {} for {}", build.build_type, build.compiler, build.system)},
+                     {"flags", build.flags},
+                     {"libraries", fmt::format("{}", fmt::join(build.libraries, ", "))}}));
 }
 
 void add_later_command(CLI::App& app, const std::string& name, const std::string& summary) {
     CLI::App* command = app.add_subcommand(name, summary + " (comes with a later version)");
     command->allow_extras();
     command->callback([name] {
-        throw InputError(fmt::format("`lamella {}` comes with a later version; `lamella plot` draws pictures of a run, "
-                                     "and its frames open in ParaView",
-                                     name));
+        throw InputError(
+            fmt::format("`lamella {}` comes with a later version; `lamella plot` draws pictures of a run, "
+                        "and its frames open in ParaView",
+                        name));
     });
 }
 

@@ -1,6 +1,7 @@
 """The command line: help, misuse, read-outs, streams. No run takes place here."""
 
 import json
+import shutil
 import subprocess
 import unittest
 
@@ -130,6 +131,20 @@ class ReadOuts(ProgramTest):
         for command in (["measure", self.folder], ["plot", self.folder], ["export", self.folder, "--to", "csv"],
                         ["resume", self.folder], ["measure", self.scene]):
             self.assert_refused(lamella(*command))
+
+
+class ForeignSeries(ProgramTest):
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed")
+    def test_of_any_solver_is_drawn_column_by_column(self):
+        run = self.folder / "run"
+        run.mkdir()
+        (run / "scene.toml").write_text("")
+        (run / "run.json").write_text("{}")
+        (run / "series.csv").write_text("time[s],total_area[m^2],it's_odd[-],empty[-]\n"
+                                        "0,1.5,3,nan\n0.1,1.25,4,nan\n0.2,1.125,nan,nan\n")
+        self.assert_exit(lamella("plot", run), 0)
+        self.assertEqual({path.name for path in (run / "plots").iterdir()}, {"total_area.png", "it's_odd.png"})
+        self.assert_exit(lamella("plot", run, "--out", self.folder / "all.png"), 0)
 
 
 class Streams(ProgramTest):

@@ -1,16 +1,15 @@
 #include "foam_panels.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include "lamella/measure/local_gas_fraction.h"
+#include "lamella/measure/measure.h"
+#include "lamella/measure/size_distribution.h"
 
 #include <fmt/format.h>
 
 #include "frame_source.h"
-
-#include "lamella/measure/local_gas_fraction.h"
-#include "lamella/measure/measure.h"
-#include "lamella/measure/size_distribution.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace lamella::app {
 namespace {
@@ -80,7 +79,8 @@ std::optional<Panel> growth_panel(Gnuplot& gnuplot, const io::CsvTable& series) 
 
     const Extent x = extent_of(rows[0]);
     const Extent y = extent_of(rows[1]);
-    const double from = std::max(x.low, x.high / 12.0);
+    const double from = std::max(x.low, x.high / 8.0);
+    const double left = std::max(x.low, x.high / 2000.0);  // what came before is the rest of the packing
     const auto guide = [&](double slope, double lift, const char* label) {
         Columns line(2);
         for (const double t : {from, x.high}) {
@@ -88,11 +88,11 @@ std::optional<Panel> growth_panel(Gnuplot& gnuplot, const io::CsvTable& series) 
             line[1].push_back(lift * rows[1].back() * std::pow(t / x.high, slope));
         }
         const double middle = std::sqrt(from * x.high);
-        return std::pair{gnuplot.data(line),
-                         fmt::format("set label '{}' at {:.6g},{:.6g} center tc rgb '{}'\n", label, middle,
-                                     (lift > 1.0 ? 1.10 : 0.90) * lift * rows[1].back() *
-                                         std::pow(middle / x.high, slope),
-                                     kGuide)};
+        return std::pair{
+            gnuplot.data(line),
+            fmt::format("set label '{}' at {:.6g},{:.6g} {} tc rgb '{}'\n", label, middle,
+                        (lift > 1.0 ? 1.09 : 0.91) * lift * rows[1].back() * std::pow(middle / x.high, slope),
+                        lift > 1.0 ? "right" : "left", kGuide)};
     };
     const auto [half, half_label] = guide(0.5, 1.30, "1/2");
     const auto [third, third_label] = guide(1.0 / 3.0, 0.74, "1/3");
@@ -101,12 +101,13 @@ std::optional<Panel> growth_panel(Gnuplot& gnuplot, const io::CsvTable& series) 
 
     std::string script = panel_style() + kTimeLabel + half_label + third_label;
     script += initial ? "set ylabel '⟨{/:Italic R}⟩ / ⟨{/:Italic R}_{in}⟩'\n" : "set ylabel '⟨{/:Italic R}⟩'\n";
-    script += fmt::format("set logscale xy\nset xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n", x.low,
+    script += fmt::format("set logscale xy\nset xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n", left,
                           1.15 * x.high, low, high);
-    script += log_tics('x', x.low, 1.15 * x.high) + log_tics('y', low, high) + "unset key\n";
-    script += fmt::format("plot {} with lines lw 0.8 dt 2 lc rgb '{}', {} with lines lw 0.8 dt 2 lc rgb '{}', "
-                          "{} with lines lw 1.6 lc rgb '{}'\n",
-                          half, kGuide, third, kGuide, gnuplot.data(rows), kPurple);
+    script += log_tics('x', left, 1.15 * x.high) + log_tics('y', low, high) + "unset key\n";
+    script += fmt::format(
+        "plot {} with lines lw 0.8 dt 2 lc rgb '{}', {} with lines lw 0.8 dt 2 lc rgb '{}', "
+        "{} with lines lw 1.6 lc rgb '{}'\n",
+        half, kGuide, third, kGuide, gnuplot.data(rows), kPurple);
     return Panel{"growth", script};
 }
 
@@ -145,9 +146,10 @@ std::optional<Panel> avalanche_panel(Gnuplot& gnuplot, const io::CsvTable& serie
     std::string script = panel_style() + kTimeLabel + "set ylabel 'normalized'\nset key top right\n";
     script += fmt::format("set xrange [0:{:.9g}]\nset yrange [-1.15:1.3]\nset ytics 0.5\n", time->back());
     script += "set arrow from graph 0,first 0 to graph 1,first 0 nohead lw 0.5 lc rgb '#333333'\n";
-    script += fmt::format("plot {0} using 1:2 with lines lw 0.7 lc rgb '{1}' title 'velocity variance', "
-                          "{0} using 1:3 with lines lw 0.7 lc rgb '{2}' title 'energy released'\n",
-                          data, kBlue, kPurple);
+    script += fmt::format(
+        "plot {0} using 1:2 with lines lw 0.7 lc rgb '{1}' title 'velocity variance', "
+        "{0} using 1:3 with lines lw 0.7 lc rgb '{2}' title 'energy released'\n",
+        data, kBlue, kPurple);
     return Panel{"avalanches", script};
 }
 
@@ -162,7 +164,8 @@ std::optional<Panel> count_panel(Gnuplot& gnuplot, const io::CsvTable& series) {
     const double low = 0.7 * y.low;
     const double high = 1.4 * y.high;
     std::string script = panel_style() + kTimeLabel;
-    script += fmt::format("set ylabel 'bubbles left {{/:Italic N}}' tc rgb '{}'\nset logscale xy\nunset key\n", kPurple);
+    script +=
+        fmt::format("set ylabel 'bubbles left {{/:Italic N}}' tc rgb '{}'\nset logscale xy\nunset key\n", kPurple);
     script += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n", x.low, x.high, low, high);
     script += log_tics('x', x.low, x.high) + log_tics('y', low, high);
     std::string plot = fmt::format("plot {} with lines lw 1.6 lc rgb '{}'", gnuplot.data(rows), kPurple);
@@ -170,9 +173,10 @@ std::optional<Panel> count_panel(Gnuplot& gnuplot, const io::CsvTable& series) {
         const Columns contact_rows = positive_rows(*time, *contacts);
         const Extent z = extent_of(contact_rows[1]);
         const double margin = std::max(0.1, 0.3 * (z.high - z.low));
-        script += fmt::format("set y2label 'contacts per bubble ⟨{{/:Italic Z}}⟩' tc rgb '{}'\nset y2tics\n"
-                              "set y2range [{:.9g}:{:.9g}]\n",
-                              kGreen, z.low - margin, z.high + margin);
+        script += fmt::format(
+            "set y2label 'contacts per bubble ⟨{{/:Italic Z}}⟩' tc rgb '{}'\nset y2tics\n"
+            "set y2range [{:.9g}:{:.9g}]\n",
+            kGreen, z.low - margin, z.high + margin);
         plot += fmt::format(", {} axes x1y2 with lines lw 1.2 lc rgb '{}'", gnuplot.data(contact_rows), kGreen);
     }
     return Panel{"bubbles", script + plot + "\n"};
@@ -205,29 +209,30 @@ std::optional<Panel> size_panel(Gnuplot& gnuplot, const std::vector<sim::Frame>&
 }
 
 std::optional<Panel> homogeneity_panel(Gnuplot& gnuplot, const std::vector<sim::Frame>& frames) {
-    constexpr double kBinWidth = 0.01;
-    std::vector<std::string> data;
+    std::vector<std::vector<double>> deviations;  // of every cell, per frame
     std::vector<double> times;
+    double largest = 0.0;
     for (const sim::Frame& frame : frames) {
         if (!frame.box || frame.points.radius.empty()) continue;
+        std::vector<double> local = measure::local_gas_fraction(frame.points, *frame.box, measure::kGasFractionCells);
         const auto global = measure::find_value(measure::measure_frame(frame), "gas_fraction");
-        const std::vector<double> local =
-            measure::local_gas_fraction(frame.points, *frame.box, measure::kGasFractionCells);
-        std::vector<double> share;
-        for (const double value : local) {
-            const auto bin = static_cast<std::size_t>(std::min(std::abs(value - *global) / kBinWidth, 1e3));
-            if (bin >= share.size()) share.resize(bin + 1, 0.0);
-            share[bin] += 1.0 / static_cast<double>(local.size());
-        }
-        Columns curve(2);
-        for (std::size_t bin = 0; bin <= share.size(); ++bin) {
-            curve[0].push_back(kBinWidth * (static_cast<double>(bin) + 0.5));
-            curve[1].push_back(bin < share.size() ? share[bin] : 0.0);
-        }
-        data.push_back(gnuplot.data(curve));
+        for (double& value : local) largest = std::max(largest, value = std::abs(value - *global));
+        deviations.push_back(std::move(local));
         times.push_back(frame.time);
     }
-    if (data.empty()) return std::nullopt;
+    if (!(largest > 0.0)) return std::nullopt;
+
+    constexpr double kBins = 16.0;
+    const double width = largest / kBins;
+    std::vector<std::string> data;
+    for (const std::vector<double>& cells : deviations) {
+        Columns curve(2, std::vector<double>(static_cast<std::size_t>(kBins) + 2, 0.0));
+        for (std::size_t bin = 0; bin < curve[0].size(); ++bin)
+            curve[0][bin] = width * (static_cast<double>(bin) + 0.5);
+        for (const double value : cells)
+            curve[1][static_cast<std::size_t>(value / width)] += 1.0 / static_cast<double>(cells.size());
+        data.push_back(gnuplot.data(curve));
+    }
     std::string script = panel_style();
     script += "set xlabel '|local − global gas fraction|'\nset ylabel 'share of the cells'\n";
     script += "set xrange [0:*]\nset yrange [0:*]\nset key top right\n" + curves_by_time(data, times);

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <optional>
-#include <vector>
+#include "lamella/io/csv.h"
+#include "lamella/sim/frame.h"
 
 #include "gnuplot.h"
 #include "style.h"
-
-#include "lamella/io/csv.h"
-#include "lamella/sim/frame.h"
+#include <optional>
+#include <vector>
 
 namespace lamella::app {
 

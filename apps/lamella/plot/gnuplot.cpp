@@ -1,20 +1,19 @@
 #include "gnuplot.h"
 
+#include "lamella/core/error.h"
+#include "lamella/io/atomic_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <array>
 #include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <fmt/format.h>
-
-#include "lamella/core/error.h"
-#include "lamella/io/atomic_file.h"
 
 extern char** environ;  // POSIX has it in no header
 
@@ -25,11 +24,13 @@ namespace fs = std::filesystem;
 
 std::string terminal(const fs::path& picture, int width, int height) {
     if (picture.extension() == ".png")
-        return fmt::format("set terminal pngcairo size {},{} font 'DejaVu Sans,20' linewidth 2 rounded\n", width, height);
+        return fmt::format("set terminal pngcairo size {},{} font 'DejaVu Sans,20' linewidth 2 rounded\n", width,
+                           height);
     if (picture.extension() == ".svg")
-        return fmt::format("set terminal svg size {},{} font 'DejaVu Sans, Arial, Helvetica, sans-serif,20' linewidth 2 "
-                           "rounded background rgb 'white'\n",
-                           width, height);
+        return fmt::format(
+            "set terminal svg size {},{} font 'DejaVu Sans, Arial, Helvetica, sans-serif,20' linewidth 2 "
+            "rounded background rgb 'white'\n",
+            width, height);
     throw InputError(fmt::format("{}: a picture ends with .png or .svg", picture.string()));
 }
 
@@ -47,7 +48,8 @@ int run_gnuplot(const fs::path& script, const fs::path& messages) {
     pid_t child = 0;
     const int error = ::posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments.data(), environ);
     ::posix_spawn_file_actions_destroy(&actions);
-    if (error == ENOENT) throw IoError("gnuplot is needed for plots and is not on the PATH (Debian: apt install gnuplot-nox)");
+    if (error == ENOENT)
+        throw IoError("gnuplot is needed for plots and is not on the PATH (Debian: apt install gnuplot-nox)");
     if (error != 0) throw IoError(fmt::format("gnuplot: {}", std::strerror(error)));
     int status = 0;
     while (::waitpid(child, &status, 0) < 0)

@@ -1,14 +1,14 @@
 #include "snapshot.h"
 
+#include "lamella/core/error.h"
+#include "lamella/measure/measure.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
-
-#include <fmt/format.h>
-
-#include "lamella/core/error.h"
-#include "lamella/measure/measure.h"
 
 namespace lamella::app {
 namespace {
@@ -24,7 +24,8 @@ struct ColorScale {
     unsigned color(std::size_t i) const {
         constexpr unsigned kNoValue = 0xd8d8d8;
         if (!std::isfinite(values[i])) return kNoValue;
-        const double x = logarithmic ? std::log(values[i] / low) / std::log(high / low) : (values[i] - low) / (high - low);
+        const double x =
+            logarithmic ? std::log(values[i] / low) / std::log(high / low) : (values[i] - low) / (high - low);
         return map_color(x);
     }
 };
@@ -64,15 +65,16 @@ ColorScale color_scale(const sim::Frame& frame, ColorBy color_by) {
                 if (!(value > 0.0)) value = std::nan("");
             scale.logarithmic = true;
             scale.high = quantile(scale.values, 0.999);
-            // Below a ten-thousandth lie bubbles that barely touch; they would take all the colors.
-            scale.low = std::max(quantile(scale.values, 0.02), 1e-4 * scale.high);
+            // Below a thousandth lie bubbles that barely touch; they would take all the colors.
+            scale.low = std::max(quantile(scale.values, 0.05), 1e-3 * scale.high);
             scale.label = "energy of a bubble";
             break;
         }
         case ColorBy::kDisplacement: {
             const sim::Field& moved = needed_field(frame, "frame_displacement", 3);
             for (std::size_t i = 0; i < radius.size(); ++i)
-                scale.values.push_back(norm(Vec3{{moved.values[3 * i], moved.values[3 * i + 1], moved.values[3 * i + 2]}}));
+                scale.values.push_back(
+                    norm(Vec3{{moved.values[3 * i], moved.values[3 * i + 1], moved.values[3 * i + 2]}}));
             scale.high = quantile(scale.values, 0.99);  // a few bubbles jump across a gap
             scale.label = "distance moved since the last frame";
             break;
@@ -104,8 +106,8 @@ std::vector<Circle> flat_circles(const sim::Frame& frame, const ColorScale& scal
         };
         for (const double dx : shifts(0))
             for (const double dy : shifts(1))
-                circles.push_back({frame.points.position[i][0] + dx, frame.points.position[i][1] + dy, r, 0.0,
-                                   scale.color(i)});
+                circles.push_back(
+                    {frame.points.position[i][0] + dx, frame.points.position[i][1] + dy, r, 0.0, scale.color(i)});
     }
     return circles;
 }
@@ -129,10 +131,11 @@ std::vector<Circle> ball_circles(const sim::Frame& frame, const ColorScale& scal
     std::vector<Circle> circles;
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
         const Vec3& p = frame.points.position[i];
-        circles.push_back({dot(p, view.right), dot(p, view.up), frame.points.radius[i], dot(p, view.toward),
-                           scale.color(i)});
+        circles.push_back(
+            {dot(p, view.right), dot(p, view.up), frame.points.radius[i], dot(p, view.toward), scale.color(i)});
     }
-    std::stable_sort(circles.begin(), circles.end(), [](const Circle& a, const Circle& b) { return a.depth < b.depth; });
+    std::stable_sort(circles.begin(), circles.end(),
+                     [](const Circle& a, const Circle& b) { return a.depth < b.depth; });
     return circles;
 }
 
@@ -141,13 +144,13 @@ std::vector<Circle> lit_balls(const std::vector<Circle>& balls) {
     if (balls.empty()) return {};
     const double far = balls.front().depth;
     const double range = std::max(balls.back().depth - far, 1e-300);
-    constexpr int kMostLit = 40000;  // circles cost gnuplot 20 microseconds each; a crowd is too small to see them
-    const int rings = balls.size() <= kMostLit ? 5 : 1;
+    // Circles cost gnuplot 20 microseconds each, and in a crowd the rings are too small to see.
+    const int rings = balls.size() <= 10000 ? 10 : balls.size() <= 40000 ? 5 : 1;
     std::vector<Circle> circles;
     for (const Circle& ball : balls) {
         const double haze = 0.35 * (1.0 - (ball.depth - far) / range);
         for (int ring = 0; ring < rings; ++ring) {
-            const double inward = static_cast<double>(ring) / 5.0;
+            const double inward = static_cast<double>(ring) / rings;
             Circle circle = ball;
             circle.x -= 0.30 * inward * ball.radius;
             circle.y += 0.30 * inward * ball.radius;
@@ -242,18 +245,20 @@ Panel flat_panel(Gnuplot& gnuplot, const sim::Frame& frame, const ColorScale& sc
     const std::vector<Circle> circles = flat_circles(frame, scale);
     // Rims tell touching discs apart, where discs are large enough to have one.
     constexpr std::size_t kMostWithRims = 20000;
-    const std::string rim = circles.size() <= kMostWithRims
-                                ? fmt::format("lw {:.2g} fs solid 1 border lc rgb '#202020'", circles.size() < 3000 ? 0.5 : 0.25)
-                                : "fs solid 1 noborder";
+    const std::string rim =
+        circles.size() <= kMostWithRims
+            ? fmt::format("lw {:.2g} fs solid 1 border lc rgb '#202020'", circles.size() < 3000 ? 0.5 : 0.25)
+            : "fs solid 1 noborder";
     std::string script = panel_style() + color_bar(scale);
     script += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\nset size ratio -1\n", box.origin[0],
                           box.origin[0] + box.lengths[0], box.origin[1], box.origin[1] + box.lengths[1]);
     script += overhanging_circles(box, circles, rim);
     script += fmt::format("set title {} noenhanced offset 0,-0.4\n", gnuplot_text(caption(frame)));
     script += "set tics out\nset xlabel '{/:Italic x}'\nset ylabel '{/:Italic y}'\nset border front\nunset key\n";
-    script += fmt::format("plot {} using 1:2:3:4 with circles lc rgb variable {}, "
-                          "NaN with points palette\n",
-                          circle_data(gnuplot, circles), rim);
+    script += fmt::format(
+        "plot {} using 1:2:3:4 with circles lc rgb variable {}, "
+        "NaN with points palette\n",
+        circle_data(gnuplot, circles), rim);
     return {"snapshot", script, 1.15 * std::min(2.0, box.lengths[0] / box.lengths[1])};
 }
 
@@ -262,12 +267,14 @@ Panel projected_panel(Gnuplot& gnuplot, const sim::Frame& frame, const ColorScal
     const std::vector<Circle> circles = lit_balls(ball_circles(frame, scale, view));
     std::string script = panel_style() + color_bar(scale);
     script += fmt::format("set title {} noenhanced offset 0,-0.4\n", gnuplot_text(caption(frame)));
-    script += "set size ratio -1\nunset border\nunset tics\nset cbtics\nunset key\nset offsets graph 0.03,0.03,0.03,0.03\n";
+    script +=
+        "set size ratio -1\nunset border\nunset tics\nset cbtics\nunset key\nset offsets graph 0.03,0.03,0.03,0.03\n";
     const std::string line = "using 1:2 with lines lc rgb '#555555' lw 0.6";
-    script += fmt::format("plot {} {}, {} using 1:2:3:4 with circles lc rgb variable fs solid 1 noborder, {} {}, "
-                          "NaN with points palette\n",
-                          box_edges(gnuplot, *frame.box, view, true), line, circle_data(gnuplot, circles),
-                          box_edges(gnuplot, *frame.box, view, false), line);
+    script += fmt::format(
+        "plot {} {}, {} using 1:2:3:4 with circles lc rgb variable fs solid 1 noborder, {} {}, "
+        "NaN with points palette\n",
+        box_edges(gnuplot, *frame.box, view, true), line, circle_data(gnuplot, circles),
+        box_edges(gnuplot, *frame.box, view, false), line);
     return {"snapshot", script, 1.15};
 }
 

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <string>
+#include "lamella/sim/frame.h"
 
 #include "gnuplot.h"
 #include "style.h"
-
-#include "lamella/sim/frame.h"
+#include <string>
 
 namespace lamella::app {
 

@@ -1,10 +1,10 @@
 #include "style.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace lamella::app {
 namespace {
@@ -36,7 +36,8 @@ std::string panel_style() {
            "set tics scale 0.6,0.3 tc rgb '#333333'\n"
            "set xtics nomirror\nset ytics nomirror\n"
            "set key noenhanced samplen 1.5 spacing 1.1 tc rgb '#333333' opaque fc rgb '#ffffff'\n"
-           "set palette defined (" + palette + ")\n";
+           "set palette defined (" +
+           palette + ")\n";
 }
 
 unsigned map_color(double x) {
@@ -52,14 +53,15 @@ unsigned shaded(unsigned rgb, double share) { return mix(rgb, share > 0.0 ? 0xff
 std::string log_tics(char axis, double low, double high) {
     if (!(low > 0.0 && high > low && std::isfinite(high))) return "";
     const double decades = std::log10(high / low);
-    if (decades > 2.5) return fmt::format("set format {} '10^{{%L}}'\nset {}tics 10\nset m{}tics 10\n", axis, axis, axis);
+    if (decades > 2.5)
+        return fmt::format("set format {} '10^{{%L}}'\nset {}tics 10\nset m{}tics 10\n", axis, axis, axis);
     std::string list;
     for (int power = static_cast<int>(std::floor(std::log10(low))); power <= std::ceil(std::log10(high)); ++power)
         for (int digit = 1; digit <= 9; ++digit) {
             const bool labeled = digit == 1 || digit == 2 || digit == 5 || (decades < 1.0 && digit == 3);
             const double value = digit * std::pow(10.0, power);
-            list += fmt::format("{}'{}' {:.6g} {}", list.empty() ? "" : ", ", labeled ? fmt::format("{:.6g}", value) : "",
-                                value, labeled ? 0 : 1);
+            list += fmt::format("{}'{}' {:.6g} {}", list.empty() ? "" : ", ",
+                                labeled ? fmt::format("{:.6g}", value) : "", value, labeled ? 0 : 1);
         }
     return fmt::format("set {}tics ({})\n", axis, list);
 }

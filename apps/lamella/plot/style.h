@@ -6,7 +6,7 @@ namespace lamella::app {
 
 /// A part of a picture: a gnuplot script without terminal, drawn alone or as one of several.
 struct Panel {
-    std::string name;    ///< of its file, "growth"
+    std::string name;  ///< of its file, "growth"
     std::string script;
     double aspect = 1.25;  ///< width over height when drawn alone
 };

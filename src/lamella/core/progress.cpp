@@ -1,9 +1,9 @@
 #include "lamella/core/progress.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace lamella {
 
@@ -12,8 +12,8 @@ void ProgressEstimate::update(double seconds, double fraction) {
 
     // Reports closer together than 1/300 of the time so far replace each other: the memory stays small.
     constexpr double kSamplesPerRun = 300.0;
-    const bool crowded = samples_.size() >= 2 &&
-                         seconds - samples_[samples_.size() - 2].seconds < seconds / kSamplesPerRun;
+    const bool crowded =
+        samples_.size() >= 2 && seconds - samples_[samples_.size() - 2].seconds < seconds / kSamplesPerRun;
     if (crowded) samples_.pop_back();
     samples_.push_back({seconds, fraction});
 

@@ -1,15 +1,15 @@
 #include "lamella/measure/local_gas_fraction.h"
 
+#include "lamella/core/error.h"
+#include "lamella/core/parallel.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include <fmt/format.h>
-
-#include "lamella/core/error.h"
-#include "lamella/core/parallel.h"
 
 namespace lamella::measure {
 namespace {
@@ -124,7 +124,8 @@ void add_ball(const std::array<Axis, 3>& axes, const Vec3& center, double r, std
             for (int x = x0; x <= x1; ++x) {
                 const double part = ball_in_cuboid(axes[0].interval(x, center[0]), axes[1].interval(y, center[1]),
                                                    axes[2].interval(z, center[2]), r);
-                shares.push_back({(axes[2].wrapped(z) * cells + axes[1].wrapped(y)) * cells + axes[0].wrapped(x), part});
+                shares.push_back(
+                    {(axes[2].wrapped(z) * cells + axes[1].wrapped(y)) * cells + axes[0].wrapped(x), part});
                 total += part;
             }
     const double scale = ball_volume(r, 3) / total;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <vector>
-
 #include "lamella/sim/frame.h"
+
+#include <vector>
 
 namespace lamella::measure {
 

@@ -1,13 +1,13 @@
 #include "lamella/measure/measure.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include <fmt/format.h>
-
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/measure/local_gas_fraction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace lamella::measure {
 namespace {
@@ -21,7 +21,8 @@ const Field* find_field(const sim::Points& points, std::string_view name, int co
     const Field* field = points.find(name);
     if (field == nullptr || field->components != components) return nullptr;
     if (field->values.size() != points.size() * static_cast<std::size_t>(components))
-        throw InputError(fmt::format("field {} has {} values for {} points", name, field->values.size(), points.size()));
+        throw InputError(
+            fmt::format("field {} has {} values for {} points", name, field->values.size(), points.size()));
     return field;
 }
 
@@ -49,9 +50,8 @@ void measure_sizes(const Frame& frame, Report& report) {
     const auto count = static_cast<double>(balls.size());
     report.add("bubbles", "-", count, "bubbles present");
     if (frame.box) {
-        const double volume = parallel_sum(radius.size(), [&](std::size_t i) {
-            return ball_volume(radius[i], frame.box->dimension);
-        });
+        const double volume =
+            parallel_sum(radius.size(), [&](std::size_t i) { return ball_volume(radius[i], frame.box->dimension); });
         report.add("gas_fraction", "-", volume / box_volume(*frame.box), "volume of the balls / volume of the box");
     }
     report.add("mean_radius", balls.length_unit,
@@ -67,13 +67,13 @@ void measure_contacts(const Frame& frame, Report& report) {
     if (contacts == nullptr) return;
     const std::size_t size = frame.points.size();
     const auto count = static_cast<double>(size);
-    report.add("mean_contacts", "-",
-               parallel_sum(size, [&](std::size_t i) { return contacts->values[i]; }) / count, "<Z>");
+    report.add("mean_contacts", "-", parallel_sum(size, [&](std::size_t i) { return contacts->values[i]; }) / count,
+               "<Z>");
     const int dimension = frame.box ? frame.box->dimension : 3;
-    report.add("rattlers", "-",
-               parallel_sum(size,
-                            [&](std::size_t i) { return contacts->values[i] < dimension + 1 ? 1.0 : 0.0; }) / count,
-               fmt::format("fraction of bubbles with fewer than {} contacts", dimension + 1));
+    report.add(
+        "rattlers", "-",
+        parallel_sum(size, [&](std::size_t i) { return contacts->values[i] < dimension + 1 ? 1.0 : 0.0; }) / count,
+        fmt::format("fraction of bubbles with fewer than {} contacts", dimension + 1));
 }
 
 void measure_motion(const Frame& frame, Report& report) {
@@ -93,10 +93,11 @@ void measure_motion(const Frame& frame, Report& report) {
                    parallel_sum(balls.size(), [&](std::size_t i) { return path->values[i]; }) / count,
                    "mean length of the paths travelled");
     if (const Field* displacement = find_field(balls, "displacement", 3))
-        report.add("mean_square_displacement", squared_unit(displacement->unit),
-                   parallel_sum(balls.size(),
-                                [&](std::size_t i) { return squared_norm(vector_at(*displacement, i)); }) / count,
-                   "<|displacement from the start|^2>");
+        report.add(
+            "mean_square_displacement", squared_unit(displacement->unit),
+            parallel_sum(balls.size(), [&](std::size_t i) { return squared_norm(vector_at(*displacement, i)); }) /
+                count,
+            "<|displacement from the start|^2>");
 }
 
 void measure_homogeneity(const Frame& frame, Report& report) {

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "lamella/sim/frame.h"
+
 #include <optional>
 #include <string_view>
 #include <vector>
-
-#include "lamella/sim/frame.h"
 
 namespace lamella::measure {
 
@@ -12,12 +12,9 @@ namespace lamella::measure {
 ///
 /// Balls (Points with radii), N of them, brackets = mean over the balls:
 ///   bubbles               N
-///   gas_fraction          sum of the balls' volumes / volume of the box (areas in two dimensions); overlaps count twice
-///   mean_radius           <R>
-///   mean_square_radius    <R^2>
-///   max_radius            largest R
-///   mean_contacts         <Z>                               needs the field `contacts`
-///   rattlers              fraction with Z < dimension + 1   needs `contacts`
+///   gas_fraction          sum of the balls' volumes / volume of the box (areas in two dimensions); overlaps count
+///   twice mean_radius           <R> mean_square_radius    <R^2> max_radius            largest R mean_contacts <Z>
+///   needs the field `contacts` rattlers              fraction with Z < dimension + 1   needs `contacts`
 ///   velocity_variance     <|v|^2> - |<v>|^2                 needs `velocity`
 ///   mean_path             <path travelled>                  needs `path_length`
 ///   mean_square_displacement  <|displacement from start|^2> needs `displacement`

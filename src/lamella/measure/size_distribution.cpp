@@ -1,12 +1,12 @@
 #include "lamella/measure/size_distribution.h"
 
-#include <algorithm>
-#include <cmath>
+#include "lamella/core/error.h"
+#include "lamella/core/parallel.h"
 
 #include <fmt/format.h>
 
-#include "lamella/core/error.h"
-#include "lamella/core/parallel.h"
+#include <algorithm>
+#include <cmath>
 
 namespace lamella::measure {
 

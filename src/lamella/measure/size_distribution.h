@@ -7,9 +7,9 @@ namespace lamella::measure {
 
 /// A probability density over bins of equal width.
 struct Histogram {
-    double low = 0.0;              ///< left edge of the first bin
+    double low = 0.0;  ///< left edge of the first bin
     double bin_width = 0.0;
-    std::vector<double> density;   ///< per bin; sum times bin_width is 1
+    std::vector<double> density;  ///< per bin; sum times bin_width is 1
 
     double center(std::size_t bin) const { return low + bin_width * (static_cast<double>(bin) + 0.5); }
 };

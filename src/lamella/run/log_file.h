@@ -1,10 +1,10 @@
 #pragma once
 
+#include "lamella/core/log.h"
+
 #include <filesystem>
 #include <memory>
 #include <string_view>
-
-#include "lamella/core/log.h"
 
 namespace lamella::run {
 

@@ -1,17 +1,16 @@
 #include "lamella/run/provenance.h"
 
-#include <chrono>
-#include <ctime>
-
-#include <unistd.h>
-
-#include <fmt/chrono.h>
-#include <nlohmann/json.hpp>
-
 #include "lamella/core/build_info.h"
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/io/atomic_file.h"
+
+#include <fmt/chrono.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <chrono>
+#include <ctime>
 
 namespace lamella::run {
 namespace {
@@ -29,8 +28,8 @@ double cpu_seconds() {
 }
 
 std::string now_text() {
-    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(
-                                                    std::chrono::system_clock::now())));
+    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                       fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
 }
 
 std::string host_name() {
@@ -40,7 +39,8 @@ std::string host_name() {
 
 ordered_json stage_seconds(const StageTimes& times, double StageTimes::Seconds::*kind) {
     ordered_json seconds;
-    for (std::size_t k = 0; k < kStageNames.size(); ++k) seconds[kStageNames[k]] = times.of(static_cast<Stage>(k)).*kind;
+    for (std::size_t k = 0; k < kStageNames.size(); ++k)
+        seconds[kStageNames[k]] = times.of(static_cast<Stage>(k)).*kind;
     return seconds;
 }
 

@@ -1,13 +1,13 @@
 #pragma once
 
+#include "lamella/scene/scene.h"
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
-
-#include "lamella/scene/scene.h"
 
 namespace lamella::run {
 
@@ -52,8 +52,8 @@ struct RunRecord {
     std::string time_unit = "s";
     std::int64_t step = 0;
     std::int64_t frames = 0;
-    std::int64_t steps_taken = 0;   ///< by this process
-    std::int64_t evaluations = 0;   ///< by this process
+    std::int64_t steps_taken = 0;  ///< by this process
+    std::int64_t evaluations = 0;  ///< by this process
     StageTimes times;
     std::vector<std::string> notes;
 };

@@ -1,10 +1,10 @@
 #include "lamella/run/run.h"
 
-#include <fmt/format.h>
-
 #include "lamella/core/error.h"
 #include "lamella/io/atomic_file.h"
 #include "lamella/run/detail/loop.h"
+
+#include <fmt/format.h>
 
 namespace lamella::run {
 namespace {

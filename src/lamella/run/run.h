@@ -1,45 +1,45 @@
 #pragma once
 
+#include "lamella/core/log.h"
+#include "lamella/run/run_folder.h"
+#include "lamella/scene/scene.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 
-#include "lamella/core/log.h"
-#include "lamella/run/run_folder.h"
-#include "lamella/scene/scene.h"
-
 namespace lamella::run {
 
 /// Where a run is, for a display.
 struct RunProgress {
-    std::string stage;                ///< "run", or what the solver does while it starts
-    std::optional<double> fraction;   ///< of that stage that is done, 0 to 1; nothing when nobody knows
-    double time = 0.0;                ///< in time_unit
+    std::string stage;               ///< "run", or what the solver does while it starts
+    std::optional<double> fraction;  ///< of that stage that is done, 0 to 1; nothing when nobody knows
+    double time = 0.0;               ///< in time_unit
     std::string time_unit = "s";
     std::int64_t step = 0;
-    std::int64_t frames = 0;          ///< written so far
+    std::int64_t frames = 0;  ///< written so far
 };
 
 /// How to run, beside what the scene says.
 struct RunSettings {
-    std::optional<double> until = {};         ///< stop at this time instead of the scene's end
-    Existing existing = Existing::kRefuse;    ///< what to do with a run that is in the folder
-    std::string device = "cpu";               ///< recorded in run.json
+    std::optional<double> until = {};       ///< stop at this time instead of the scene's end
+    Existing existing = Existing::kRefuse;  ///< what to do with a run that is in the folder
+    std::string device = "cpu";             ///< recorded in run.json
     /// The input is right and the folder is taken; work begins.
     std::function<void(const scene::Scene&)> on_begin = [](const scene::Scene&) {};
     /// The number of the signal that asks to stop, 0 for none. Asked after every step, and while the solver starts.
     std::function<int()> stop_signal = [] { return 0; };
     std::function<void(const RunProgress&)> on_progress = [](const RunProgress&) {};  ///< after every step
-    LogSink log = [](LogLevel, std::string_view) {};  ///< gets what goes to log.txt
+    LogSink log = [](LogLevel, std::string_view) {};                                  ///< gets what goes to log.txt
     std::function<double()> wall_clock = {};  ///< seconds, for checkpoint intervals; empty: the system's steady clock
 };
 
 struct RunResult {
-    bool finished = false;     ///< false: a signal stopped it
-    int signal = 0;            ///< which one
-    std::string stop_reason;   ///< "the end time 10 is reached", "300 bubbles are left", "interrupted by signal 2"
+    bool finished = false;    ///< false: a signal stopped it
+    int signal = 0;           ///< which one
+    std::string stop_reason;  ///< "the end time 10 is reached", "300 bubbles are left", "interrupted by signal 2"
     double time = 0.0;
     std::string time_unit = "s";
     std::int64_t step = 0;

@@ -1,18 +1,17 @@
 #include "lamella/run/run_folder.h"
 
+#include "lamella/core/error.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <utility>
 #include <vector>
-
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
-#include <fmt/format.h>
-
-#include "lamella/core/error.h"
 
 namespace lamella::run {
 namespace {
@@ -59,7 +58,8 @@ RunFolder RunFolder::create(const fs::path& path, Existing existing) {
             throw InputError(fmt::format("{} is not a folder; choose another --out", path.string()));
         if (present && holds_something(path)) {
             if (!is_run_folder(path))
-                throw InputError(fmt::format("{} holds files that are not a run's; choose another --out", path.string()));
+                throw InputError(
+                    fmt::format("{} holds files that are not a run's; choose another --out", path.string()));
             if (existing == Existing::kRefuse)
                 throw InputError(
                     fmt::format("{0} already holds a run; `lamella resume {0}` continues it, --overwrite replaces it",
@@ -104,8 +104,8 @@ void RunFolder::lock() {
 }
 
 void RunFolder::clear() const {
-    for (const fs::path& file : {scene(), provenance(), series(), events(), checkpoint(), previous_checkpoint(), log(),
-                                 frame_collection()})
+    for (const fs::path& file :
+         {scene(), provenance(), series(), events(), checkpoint(), previous_checkpoint(), log(), frame_collection()})
         fs::remove(file);
     remove_frames_from(0);
     if (!fs::is_directory(plots())) return;

@@ -8,7 +8,7 @@ namespace lamella::run {
 
 enum class Existing { kRefuse, kOverwrite };
 
-/// The folder of one run (docs/run-folder.md): where its files are, and a lock that keeps a second process out for
+/// The folder of one run (docs/file-formats.md): where its files are, and a lock that keeps a second process out for
 /// as long as this object lives.
 class RunFolder {
 public:

@@ -1,12 +1,12 @@
 #include "lamella/run/schedule.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include "lamella/core/error.h"
 
 #include <fmt/format.h>
 
-#include "lamella/core/error.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace lamella::run {
 namespace {

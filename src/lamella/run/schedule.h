@@ -1,8 +1,8 @@
 #pragma once
 
-#include <optional>
-
 #include "lamella/scene/scene.h"
+
+#include <optional>
 
 namespace lamella::run {
 

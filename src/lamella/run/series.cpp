@@ -1,13 +1,13 @@
 #include "lamella/run/series.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include "lamella/core/error.h"
+#include "lamella/measure/measure.h"
 
 #include <fmt/format.h>
 
-#include "lamella/core/error.h"
-#include "lamella/measure/measure.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace lamella::run {
 namespace {

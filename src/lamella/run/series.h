@@ -1,14 +1,14 @@
 #pragma once
 
+#include "lamella/io/csv.h"
+#include "lamella/sim/frame.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "lamella/io/csv.h"
-#include "lamella/sim/frame.h"
 
 namespace lamella::run {
 

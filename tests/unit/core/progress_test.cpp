@@ -1,8 +1,8 @@
 #include "lamella/core/progress.h"
 
-#include <limits>
-
 #include <gtest/gtest.h>
+
+#include <limits>
 
 namespace lamella {
 namespace {

@@ -1,14 +1,14 @@
 #include "lamella/measure/measure.h"
 
-#include <cmath>
-#include <numbers>
-#include <random>
-
-#include <gtest/gtest.h>
-
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/measure/local_gas_fraction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
 
 namespace lamella::measure {
 namespace {
@@ -43,8 +43,8 @@ TEST(MeasureFrame, GivesTheMeansOfItsDefinition) {
     EXPECT_NEAR(value(frame, "mean_square_radius"), 1.34 / 3.0, 1e-15);
     EXPECT_EQ(value(frame, "max_radius"), 1.0);
     EXPECT_NEAR(value(frame, "mean_contacts"), 3.0, 1e-15);
-    EXPECT_NEAR(value(frame, "rattlers"), 1.0 / 3.0, 1e-15);       // fewer than 3 contacts in two dimensions
-    EXPECT_NEAR(value(frame, "velocity_variance"), 2.0, 1e-14);    // <v^2> = 4, <v> = (1, 1): 4 - 2
+    EXPECT_NEAR(value(frame, "rattlers"), 1.0 / 3.0, 1e-15);     // fewer than 3 contacts in two dimensions
+    EXPECT_NEAR(value(frame, "velocity_variance"), 2.0, 1e-14);  // <v^2> = 4, <v> = (1, 1): 4 - 2
     EXPECT_NEAR(value(frame, "mean_path"), 3.0, 1e-15);
     EXPECT_NEAR(value(frame, "mean_square_displacement"), 7.0, 1e-14);
 }
@@ -110,9 +110,10 @@ TEST_P(LocalGasFraction, LosesNoGas) {
     // Rounding: each disc is a difference of areas of its own size.
     EXPECT_NEAR(mean, value(frame, "gas_fraction"), 1e-12);
 }
-INSTANTIATE_TEST_SUITE_P(BothDimensionsPeriodicAndWalled,
-                         LocalGasFraction,
-                         testing::Values(std::pair{2, true}, std::pair{2, false}, std::pair{3, true}, std::pair{3, false}));
+INSTANTIATE_TEST_SUITE_P(
+    BothDimensionsPeriodicAndWalled,
+    LocalGasFraction,
+    testing::Values(std::pair{2, true}, std::pair{2, false}, std::pair{3, true}, std::pair{3, false}));
 
 /// The share of cell `cell` of a disc or ball by counting points.
 double counted_fraction(const sim::Points& ball, const sim::Box& box, int cells, std::size_t cell) {
@@ -127,7 +128,8 @@ double counted_fraction(const sim::Points& ball, const sim::Box& box, int cells,
                 const std::array<double, 3> offset{(a + 0.5) / kPoints, (b + 0.5) / kPoints, (c + 0.5) / depth};
                 double squared = 0.0;
                 for (std::size_t k = 0; k < static_cast<std::size_t>(box.dimension); ++k) {
-                    const double x = box.origin[k] + box.lengths[k] / cells * (static_cast<double>(index[k]) + offset[k]);
+                    const double x =
+                        box.origin[k] + box.lengths[k] / cells * (static_cast<double>(index[k]) + offset[k]);
                     double d = x - ball.position[0][k];
                     d -= box.lengths[k] * std::round(d / box.lengths[k]);
                     squared += d * d;
@@ -139,7 +141,8 @@ double counted_fraction(const sim::Points& ball, const sim::Box& box, int cells,
 
 TEST(LocalGasFractionOfOneBall, IsThatOfCountedPoints) {
     for (const int dimension : {2, 3}) {
-        sim::Box box{.dimension = dimension, .origin = {}, .lengths = {{4.0, 4.0, 4.0}}, .periodic = {true, true, true}};
+        sim::Box box{
+            .dimension = dimension, .origin = {}, .lengths = {{4.0, 4.0, 4.0}}, .periodic = {true, true, true}};
         sim::Points ball;
         ball.position = {{{0.3, 3.1, 1.9}}};
         ball.radius = {1.3};

@@ -1,11 +1,11 @@
 #include "lamella/measure/size_distribution.h"
 
-#include <cmath>
-#include <vector>
+#include "lamella/core/error.h"
 
 #include <gtest/gtest.h>
 
-#include "lamella/core/error.h"
+#include <cmath>
+#include <vector>
 
 namespace lamella::measure {
 namespace {

@@ -1,20 +1,20 @@
 #include "lamella/run/run.h"
 
+#include "lamella/core/parallel.h"
+#include "lamella/io/csv.h"
+#include "lamella/io/frame_files.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "temporary_folder.h"
+#include "toy_foam.h"
 #include <cmath>
 #include <csignal>
 #include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
-
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
-#include "lamella/core/parallel.h"
-#include "lamella/io/csv.h"
-#include "lamella/io/frame_files.h"
-#include "temporary_folder.h"
-#include "toy_foam.h"
 
 namespace lamella::run {
 namespace {
@@ -58,7 +58,9 @@ protected:
         return scene::parse_scene(kScene, "toy.toml", overrides, registry_);
     }
     fs::path folder(const std::string& name = "run") const { return temporary_.path() / name; }
-    RunResult run(const fs::path& path, const std::vector<std::string>& overrides = {}, RunSettings settings = {}) const {
+    RunResult run(const fs::path& path,
+                  const std::vector<std::string>& overrides = {},
+                  RunSettings settings = {}) const {
         return run_scene(scene(overrides), registry_, path, settings);
     }
     RunResult resume(const fs::path& path, RunSettings settings = {}) const {
@@ -75,7 +77,8 @@ TEST_F(RunTest, WritesWhatTheRunFolderPromises) {
     EXPECT_TRUE(result.finished);
     EXPECT_EQ(result.time, 0.5);
     EXPECT_EQ(result.frames, 5);
-    for (const char* name : {"scene.toml", "run.json", "series.csv", "events.csv", "frames.pvd", "checkpoint.h5", "log.txt"})
+    for (const char* name :
+         {"scene.toml", "run.json", "series.csv", "events.csv", "frames.pvd", "checkpoint.h5", "log.txt"})
         EXPECT_TRUE(fs::is_regular_file(folder() / name)) << name;
 
     const auto entries = io::read_pvd(folder() / "frames.pvd");
@@ -269,9 +272,7 @@ TEST_F(RunTest, SavesTheLastGoodStateOfANumericalFailure) {
     EXPECT_THROW(resume(folder()), NumericalError);  // it fails again, from there
 }
 
-TEST_F(RunTest, NoticesWhenTimeStandsStill) {
-    EXPECT_THROW(run(folder(), {"toy_foam.stall=true"}), NumericalError);
-}
+TEST_F(RunTest, NoticesWhenTimeStandsStill) { EXPECT_THROW(run(folder(), {"toy_foam.stall=true"}), NumericalError); }
 
 TEST_F(RunTest, LeavesNoFolderWhenTheSceneIsWrong) {
     EXPECT_THROW(run(folder(), {"toy_foam.count=-1"}), InputError);

@@ -1,12 +1,12 @@
 #include "lamella/run/schedule.h"
 
-#include <cmath>
-#include <limits>
-#include <vector>
+#include "lamella/core/error.h"
 
 #include <gtest/gtest.h>
 
-#include "lamella/core/error.h"
+#include <cmath>
+#include <limits>
+#include <vector>
 
 namespace lamella::run {
 namespace {

@@ -1,14 +1,14 @@
 #include "lamella/run/series.h"
 
+#include "lamella/core/error.h"
+
+#include <gtest/gtest.h>
+
+#include "temporary_folder.h"
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-
-#include <gtest/gtest.h>
-
-#include "lamella/core/error.h"
-#include "temporary_folder.h"
 
 namespace lamella::run {
 namespace {
@@ -59,8 +59,9 @@ TEST(Series, WritesTimeScalarsMeasuresAndExponent) {
     series.append(frame_at(0.0));
     series.append(frame_at(0.5));
     const io::CsvTable table = io::read_csv(folder.path() / "series.csv");
-    const std::vector<std::string> header{"time[-]", "energy[J]", "bubbles[-]", "mean_radius[-]",
-                                          "mean_square_radius[-]", "max_radius[-]", "exponent[-]"};
+    const std::vector<std::string> header{
+        "time[-]",       "energy[J]",  "bubbles[-]", "mean_radius[-]", "mean_square_radius[-]",
+        "max_radius[-]", "exponent[-]"};
     EXPECT_EQ(table.header, header);
     ASSERT_EQ(table.rows.size(), 2u);
     EXPECT_EQ(table.rows[1][0], 0.5);

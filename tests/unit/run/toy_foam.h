@@ -3,19 +3,19 @@
 // A foam of balls that decay: small, exactly repeatable, and touchy. Its steps have uneven lengths that depend on the
 // state, so a run that is resumed from anything but the exact state comes out different.
 
+#include "lamella/core/error.h"
+#include "lamella/core/parallel.h"
+#include "lamella/scene/scene.h"
+#include "lamella/sim/read_options.h"
+
+#include <fmt/format.h>
+
 #include <cmath>
 #include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <fmt/format.h>
-
-#include "lamella/core/error.h"
-#include "lamella/core/parallel.h"
-#include "lamella/scene/scene.h"
-#include "lamella/sim/read_options.h"
 
 namespace lamella::run {
 
@@ -49,7 +49,8 @@ public:
         hooks_->in_start();
         if (context.stop_requested()) throw Interrupted();
         for (int i = 0; i < options_.count; ++i) {
-            const double u = std::fmod(static_cast<double>(i + 1) * 0.6180339887 + 1e-3 * static_cast<double>(seed_), 1.0);
+            const double u =
+                std::fmod(static_cast<double>(i + 1) * 0.6180339887 + 1e-3 * static_cast<double>(seed_), 1.0);
             x_.push_back(10.0 * u);
             radius_.push_back(0.3 + 0.5 * std::fmod(7.3 * u, 1.0));
             id_.push_back(i);
@@ -90,7 +91,8 @@ public:
         frame.time = time_;
         frame.time_unit = "-";
         frame.step = step_;
-        frame.box = sim::Box{.dimension = 2, .origin = {}, .lengths = {{10.0, 10.0, 0.0}}, .periodic = {true, true, false}};
+        frame.box =
+            sim::Box{.dimension = 2, .origin = {}, .lengths = {{10.0, 10.0, 0.0}}, .periodic = {true, true, false}};
         frame.points.length_unit = "-";
         frame.points.radius = radius_;
         sim::Field moved{"frame_displacement", "-", 3, false, std::vector<double>(3 * x_.size())};
@@ -160,9 +162,10 @@ inline sim::SolverRegistry toy_registry(std::shared_ptr<ToyHooks> hooks = std::m
                   .time_unit = "-",
                   .create = [hooks](const sim::SolverInput& input) { return std::make_unique<ToyFoam>(input, hooks); },
                   .describe = [] { return sim::describe_options<ToyOptions>(); },
-                  .resolve = [](const sim::Node& node) {
-                      return sim::resolve_options(sim::read_options<ToyOptions>(node), "toy_foam");
-                  }});
+                  .resolve =
+                      [](const sim::Node& node) {
+                          return sim::resolve_options(sim::read_options<ToyOptions>(node), "toy_foam");
+                      }});
     return registry;
 }
 

@@ -1,16 +1,16 @@
 #include "lamella/run/detail/loop.h"
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-
-#include <fmt/format.h>
-
 #include "lamella/core/build_info.h"
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/io/atomic_file.h"
 #include "lamella/io/frame_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 
 namespace lamella::run {
 namespace {
@@ -140,10 +140,10 @@ void Loop::write_output(OutputTime due) {
         const sim::Frame frame = solver_->frame();
         if (!events_) {
             const std::string length = frame.points.empty() ? "m" : frame.points.length_unit;
-            events_.emplace(folder_.events(),
-                            std::vector<std::string>{fmt::format("time[{}]", frame.time_unit), "kind",
-                                                     fmt::format("x[{}]", length), fmt::format("y[{}]", length),
-                                                     fmt::format("z[{}]", length), "detail"});
+            events_.emplace(
+                folder_.events(),
+                std::vector<std::string>{fmt::format("time[{}]", frame.time_unit), "kind", fmt::format("x[{}]", length),
+                                         fmt::format("y[{}]", length), fmt::format("z[{}]", length), "detail"});
         }
         collect_events();
         series_.append(frame);
@@ -169,8 +169,7 @@ void Loop::write_collection() {
 
 void Loop::advance(double limit) {
     const double before = solver_->time();
-    const sim::StepReport report =
-        record_.times.measure(Stage::kAdvance, [&] { return solver_->advance(limit); });
+    const sim::StepReport report = record_.times.measure(Stage::kAdvance, [&] { return solver_->advance(limit); });
     ++record_.steps_taken;
     record_.evaluations += report.evaluations;
     collect_events();

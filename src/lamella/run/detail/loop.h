@@ -1,9 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <string>
-
 #include "lamella/io/csv.h"
 #include "lamella/run/checkpoint_file.h"
 #include "lamella/run/log_file.h"
@@ -11,6 +7,10 @@
 #include "lamella/run/run.h"
 #include "lamella/run/schedule.h"
 #include "lamella/run/series.h"
+
+#include <memory>
+#include <optional>
+#include <string>
 
 namespace lamella::run {
 
