@@ -134,7 +134,8 @@ std::optional<Panel> avalanche_panel(Gnuplot& gnuplot, const io::CsvTable& serie
     for (std::size_t i = 1; i < time->size(); ++i) {
         rows[0].push_back((*time)[i]);
         rows[1].push_back((*variance)[i]);
-        rows[2].push_back(std::min(0.0, (*energy)[i] - (*energy)[i - 1]));
+        // Per unit of time, because the rows of a series need not be evenly spaced.
+        rows[2].push_back(std::min(0.0, ((*energy)[i] - (*energy)[i - 1]) / ((*time)[i] - (*time)[i - 1])));
         if (std::isfinite(rows[1].back())) most_variance = std::max(most_variance, rows[1].back());
         if (std::isfinite(rows[2].back())) most_release = std::max(most_release, -rows[2].back());
     }
@@ -148,7 +149,7 @@ std::optional<Panel> avalanche_panel(Gnuplot& gnuplot, const io::CsvTable& serie
     script += "set arrow from graph 0,first 0 to graph 1,first 0 nohead lw 0.5 lc rgb '#333333'\n";
     script += fmt::format(
         "plot {0} using 1:2 with lines lw 0.7 lc rgb '{1}' title 'velocity variance', "
-        "{0} using 1:3 with lines lw 0.7 lc rgb '{2}' title 'energy released'\n",
+        "{0} using 1:3 with lines lw 0.7 lc rgb '{2}' title 'energy release rate'\n",
         data, kBlue, kPurple);
     return Panel{"avalanches", script};
 }

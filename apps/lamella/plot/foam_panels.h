@@ -17,7 +17,7 @@ namespace lamella::app {
 std::optional<Panel> growth_panel(Gnuplot& gnuplot, const io::CsvTable& series);
 /// Energy against time (fig. 4.10).
 std::optional<Panel> energy_panel(Gnuplot& gnuplot, const io::CsvTable& series);
-/// Velocity variance above, released energy below, both normalized to 1 (figs. 4.2 to 4.5: avalanches).
+/// Velocity variance above, rate of energy release below, both normalized to 1 (figs. 4.2 to 4.5: avalanches).
 std::optional<Panel> avalanche_panel(Gnuplot& gnuplot, const io::CsvTable& series);
 /// Bubbles left, and contacts per bubble, against time.
 std::optional<Panel> count_panel(Gnuplot& gnuplot, const io::CsvTable& series);
