@@ -18,7 +18,7 @@ std::unique_ptr<BubbleSolver<D>> foam(int count, Method method) {
     o.dimension = D;
     o.count = count;
     o.gas_fraction = D == 2 ? 0.95 : 0.75;
-    o.start.force_tolerance = 1e-2;
+    o.start.force_tolerance = 0.05;
     o.integrator.method = method;
     if (method == Method::kAbm2) o.integrator.tolerance = 1e-5;
     sim::SolverInput input;
@@ -81,7 +81,7 @@ void lists(benchmark::State& state) {
         static_cast<double>(s.foam.slots) * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 
-BENCHMARK(contacts<2>)->Arg(10'000)->Arg(100'000)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(contacts<2>)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMillisecond);
 BENCHMARK(contacts<3>)->Arg(100'000)->Unit(benchmark::kMillisecond);
 BENCHMARK(lists<2>)->Arg(100'000)->Unit(benchmark::kMillisecond);
 BENCHMARK(lists<3>)->Arg(100'000)->Unit(benchmark::kMillisecond);

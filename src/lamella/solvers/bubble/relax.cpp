@@ -41,17 +41,13 @@ public:
     ~Fire() { system_.attached.resize(system_.attached.size() - D); }
 
     void iterate() {
-        const auto product = [&](const Columns<D>& a, const Columns<D>& b) {
-            return exact_sum(system_.foam.slots, [&](std::size_t i) { return component_product<D>(a, b, i); });
-        };
         const Columns<D>& force = system_.rates.velocity;
-        const double power = product(force, velocity_);
+        const Products products = multiply(force);
         double keep = 0.0;  // v = keep v + turn F
         double turn = 0.0;
-        if (power > 0.0) {
-            const double forces = product(force, force);
+        if (products.power > 0.0) {
             keep = 1.0 - mixing_;
-            turn = forces > 0.0 ? mixing_ * std::sqrt(product(velocity_, velocity_) / forces) : 0.0;
+            turn = mixing_ * std::sqrt(products.velocities / products.forces);
             if (++downhill_ > kDelay) {
                 step_ = std::min(kGrow * step_, longest_step_);
                 mixing_ *= kMixingDecay;
@@ -103,6 +99,54 @@ public:
     }
 
 private:
+    struct Products {
+        double power = 0.0;       ///< sum F . v
+        double forces = 0.0;      ///< sum F . F
+        double velocities = 0.0;  ///< sum v . v
+    };
+
+    /// The three sums in two passes: one for their scales, one to add.
+    Products multiply(const Columns<D>& force) const {
+        const std::size_t count = system_.foam.slots;
+        const auto largest = [](Products a, const Products& b) {
+            return Products{0.0, std::max(a.forces, b.forces), std::max(a.velocities, b.velocities)};
+        };
+        const Products scale = parallel_reduce(
+            count, Products{},
+            [&](std::size_t begin, std::size_t end) {
+                Products most;
+                for (std::size_t i = begin; i < end; ++i)
+                    most = largest(most, {0.0, component_product<D>(force, force, i),
+                                          component_product<D>(velocity_, velocity_, i)});
+                return most;
+            },
+            largest);
+        struct Sums {
+            FixedSum power, forces, velocities;
+        };
+        constexpr double kMostTerms = 2147483648.0;  // 2^31
+        const Sums none{FixedSum(kMostTerms * std::sqrt(scale.forces * scale.velocities)),
+                        FixedSum(kMostTerms * scale.forces), FixedSum(kMostTerms * scale.velocities)};
+        const Sums sums = parallel_reduce(
+            count, none,
+            [&](std::size_t begin, std::size_t end) {
+                Sums part = none;
+                for (std::size_t i = begin; i < end; ++i) {
+                    part.power.add(component_product<D>(force, velocity_, i));
+                    part.forces.add(component_product<D>(force, force, i));
+                    part.velocities.add(component_product<D>(velocity_, velocity_, i));
+                }
+                return part;
+            },
+            [](Sums a, const Sums& b) {
+                a.power += b.power;
+                a.forces += b.forces;
+                a.velocities += b.velocities;
+                return a;
+            });
+        return {sums.power.value(), sums.forces.value(), sums.velocities.value()};
+    }
+
     void evaluate(Stiffness stiffness) {
         system_.stage_current();
         const Evaluation evaluation = system_.evaluate(Gas::kOff, stiffness);
