@@ -57,7 +57,7 @@ say "Running $scene"
 "$lamella" run "$scene" --out "$run" --overwrite
 
 say "Plotting"
-"$lamella" plot "$run"
+"$lamella" plot "$run" >/dev/null
 
 cat <<TEXT
 

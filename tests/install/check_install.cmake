@@ -66,7 +66,7 @@ run(${CMAKE_COMMAND} --build ${WORK_DIR}/consumer)
 run(${WORK_DIR}/consumer/consumer ${VERSION})
 message(STATUS "consumer: ${output}")
 
-# The installed program runs, and finds the scenes beside itself although the folder moved.
+# The installed program runs from its new place and lists the scenes.
 if(PROGRAM)
   run(${prefix}/bin/${PROGRAM} version)
   if(NOT output MATCHES "${VERSION}")
