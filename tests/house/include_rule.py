@@ -23,9 +23,9 @@ FOLDERS = {
     "spatial": ["core", "geometry"],
     "mesh": ["core", "geometry", "linalg", "spatial"],
     "particles": ["core", "geometry", "linalg", "spatial"],
-    "film": ["core", "geometry", "linalg"],
-    "sim": ["core"],
-    "io": ["core", "sim", "mesh", "particles"],
+    "film": ["core", "geometry", "linalg", "spatial", "mesh"],
+    "sim": ["core", "mesh", "film"],
+    "io": ["core", "geometry", "sim", "mesh", "particles"],
     "measure": ["core", "geometry", "optics", "spatial", "mesh", "sim", "io"],
     "render": ["core", "geometry", "optics", "spatial", "mesh", "sim", "io"],
 }

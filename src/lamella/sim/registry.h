@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lamella/film/problem.h"
 #include "lamella/sim/node.h"
 #include "lamella/sim/options.h"
 #include "lamella/sim/solver.h"
@@ -34,6 +35,7 @@ struct SolverInput {
     /// Reads a CSV file with a header line. @throws IoError, InputError
     std::function<NumberTable(const std::string& file)> read_table;
     Node options;             ///< the solver's own table; an empty table where the scene has none
+    std::shared_ptr<const film::Problem> films;  ///< of a film solver; empty for others
 };
 
 struct SolverEntry {

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lamella/core/vec.h"
+#include "lamella/mesh/foam_mesh.h"
+
+namespace lamella::film {
+
+/// [material]: a common soap solution in air.
+struct Material {
+    double surface_tension = 0.025;  ///< of ONE liquid-air interface; a film has two [N/m]
+    double air_density = 1.2;        ///< [kg/m^3]
+    double thickness = 400e-9;       ///< of the film [m]
+    Vec3 gravity{};                  ///< [m/s^2]
+
+    double film_tension() const { return 2.0 * surface_tension; }  ///< [N/m]
+};
+
+/// A change of the regions at a time: [[event]] of a scene.
+struct Event {
+    enum class Kind { kPop, kInflate };
+    Kind kind = Kind::kPop;
+    double time = 0.0;                          ///< [s]
+    mesh::RegionId region = mesh::kOutside;     ///< which bubble
+    mesh::RegionId into = mesh::kOutside;       ///< pop: the region it joins
+    double volume = 0.0;                        ///< inflate: its new volume [m^3]
+};
+
+/// What every film solver starts from, whatever its method: scene tables [material], [[bubble]], [[film]], [[wire]],
+/// [foam], [resolution], [[event]].
+struct Problem {
+    Material material;
+    mesh::FoamMesh mesh;       ///< the films at the start
+    double edge_length = 0.0;  ///< wanted length of an edge [m]
+    std::vector<Event> events; ///< in order of time
+};
+
+}  // namespace lamella::film
