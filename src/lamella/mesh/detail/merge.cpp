@@ -1,0 +1,185 @@
+#include <algorithm>
+
+#include "lamella/geometry/distance.h"
+#include "lamella/mesh/detail/face_shape.h"
+#include "lamella/mesh/detail/sectors.h"
+#include "lamella/mesh/detail/workbench.h"
+
+namespace lamella::mesh::detail {
+namespace {
+
+struct ClosePair {
+    double squared_distance;
+    FaceId f, g;  // f < g
+};
+
+/// Some side of f and some side of g carry the same region, look at each other through it, and are nearly parallel.
+bool face_each_other(const EditMesh& mesh, FaceId f, FaceId g) {
+    const Face& a = mesh.face(f);
+    const Face& b = mesh.face(g);
+    if (a.back != b.back && a.back != b.front && a.front != b.back && a.front != b.front) return false;
+    const auto s = mesh.corners(f);
+    const auto t = mesh.corners(g);
+    const Vec3 m = area_vector(s);
+    const Vec3 n = area_vector(t);
+    const double cosine = dot(m, n) / (norm(m) * norm(n));
+    if (!(std::abs(cosine) > 0.75)) return false;
+    const Vec3 between = (1.0 / 3.0) * ((t[0] + t[1] + t[2]) - (s[0] + s[1] + s[2]));
+    for (const double side_a : {1.0, -1.0})
+        for (const double side_b : {1.0, -1.0}) {
+            const RegionId r = side_a > 0.0 ? a.front : a.back;
+            if (r != (side_b > 0.0 ? b.front : b.back)) continue;
+            if (side_a * side_b * cosine < -0.75 && side_a * dot(m, between) > 0.0 && side_b * dot(n, between) < 0.0)
+                return true;
+        }
+    return false;
+}
+
+/// Smallest squared distance between a vertex of one and the other, or between edges, counting only pairs that share
+/// no vertex.
+double squared_gap(const EditMesh& mesh, FaceId f, FaceId g) {
+    const auto& u = mesh.face(f).vertices;
+    const auto& v = mesh.face(g).vertices;
+    const auto s = mesh.corners(f);
+    const auto t = mesh.corners(g);
+    double least = 1e300;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (!mesh.face(g).has(u[i]))
+            least = std::min(least, geometry::squared_distance_to_triangle(s[i], t[0], t[1], t[2]));
+        if (!mesh.face(f).has(v[i]))
+            least = std::min(least, geometry::squared_distance_to_triangle(t[i], s[0], s[1], s[2]));
+        for (std::size_t j = 0; j < 3; ++j) {
+            const std::size_t i1 = (i + 1) % 3;
+            const std::size_t j1 = (j + 1) % 3;
+            if (u[i] == v[j] || u[i] == v[j1] || u[i1] == v[j] || u[i1] == v[j1]) continue;
+            least = std::min(least, geometry::squared_distance_of_segments(s[i], s[i1], t[j], t[j1]));
+        }
+    }
+    return least;
+}
+
+std::vector<ClosePair> close_pairs(const Workbench& bench) {
+    const EditMesh& mesh = bench.mesh;
+    const double reach = bench.length(bench.options.merge_distance);
+    std::vector<ClosePair> pairs;
+    for (const FaceId f : mesh.mesh().faces.ids()) {
+        if (!mesh.alive(f)) continue;
+        mesh.grid().query(mesh.grid().box(f).inflated(reach), [&](FaceId g) {
+            if (g <= f || !face_each_other(mesh, f, g)) return;
+            const double squared = squared_gap(mesh, f, g);
+            if (squared < reach * reach) pairs.push_back({squared, f, g});
+        });
+    }
+    std::sort(pairs.begin(), pairs.end(), [](const ClosePair& a, const ClosePair& b) {
+        if (a.squared_distance != b.squared_distance) return a.squared_distance < b.squared_distance;
+        return a.f != b.f ? a.f < b.f : a.g < b.g;
+    });
+    return pairs;
+}
+
+/// Which vertex of g meets each vertex of f: shared ones themselves, the rest with the least sum of squares.
+std::optional<std::array<VertexId, 3>> match(const Workbench& bench, FaceId f, FaceId g) {
+    constexpr std::array<std::array<std::size_t, 3>, 6> kOrders{
+        {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+    const EditMesh& mesh = bench.mesh;
+    const auto& u = mesh.face(f).vertices;
+    const auto& v = mesh.face(g).vertices;
+    const double farthest = bench.length(0.8);
+    std::optional<std::array<VertexId, 3>> best;
+    double least = 1e300;
+    for (const auto& order : kOrders) {
+        double sum = 0.0;
+        bool fits = true;
+        for (std::size_t i = 0; i < 3 && fits; ++i) {
+            const VertexId a = u[i];
+            const VertexId b = v[order[i]];
+            if (a == b) continue;
+            const double squared = squared_norm(mesh.at(a) - mesh.at(b));
+            fits = !mesh.face(g).has(a) && !mesh.face(f).has(b) && !mesh.on_wire(a) && !mesh.on_wire(b) &&
+                   squared < farthest * farthest;
+            sum += squared;
+        }
+        if (!fits || sum >= least) continue;
+        least = sum;
+        best = {v[order[0]], v[order[1]], v[order[2]]};
+    }
+    return best;
+}
+
+/// Makes b and a one vertex halfway between them.
+bool identify(EditMesh& mesh, VertexId a, VertexId b) {
+    const FaceList faces = mesh.faces_at(b);
+    const Vec3 middle = 0.5 * (mesh.at(a) + mesh.at(b));
+    for (const FaceId f : faces) {
+        Face face = mesh.face(f);
+        if (face.has(a)) {
+            mesh.kill_face(f);
+            continue;
+        }
+        for (VertexId& v : face.vertices)
+            if (v == b) v = a;
+        mesh.set_face(f, face);
+    }
+    mesh.move_vertex(a, middle);
+    return cancel_flaps(mesh, a);
+}
+
+/// The two triangles become one film, or a hole where the same region lies behind both. A contact is never a point,
+/// so that no separation undoes it.
+bool merge(Workbench& bench, FaceId f, FaceId g) {
+    static const double kSharpest = cot_of_degrees(3.0);
+    EditMesh& mesh = bench.mesh;
+    const auto partner = match(bench, f, g);
+    if (!partner) return false;
+    const std::array<VertexId, 3> own = mesh.face(f).vertices;
+    const Face one = mesh.face(f);
+    const Face two = mesh.face(g);
+    const auto s = mesh.corners(f);
+    double worst = kSharpest;
+    std::vector<FaceId> star;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (const VertexId v : {own[i], (*partner)[i]})
+            for (const FaceId h : mesh.faces_at(v)) star.push_back(h);
+    std::sort(star.begin(), star.end());
+    star.erase(std::unique(star.begin(), star.end()), star.end());
+    for (const FaceId h : star) worst = std::max(worst, 1.001 * sharpest_cot(mesh.corners(h)));
+
+    const StarVolumes before = star_volumes(mesh, star, s[0]);
+    mesh.begin();
+    bool fits = true;
+    for (std::size_t i = 0; i < 3 && fits; ++i)
+        if (own[i] != (*partner)[i]) fits = identify(mesh, own[i], (*partner)[i]);
+    if (fits)
+        for (const VertexId v : own)
+            if (!mesh.faces_at(v).empty() && !mesh.on_wire(v))
+                restore_volumes(mesh, v, before, s[0], bench.length(0.1));
+    if (!fits || !acceptable(mesh, worst)) {
+        mesh.rollback();
+        return false;
+    }
+    mesh.commit();
+    for (std::size_t i = 0; i < 3; ++i)
+        if (own[i] != (*partner)[i]) bench.resample(own[i], {own[i], (*partner)[i]}, {0.5, 0.5});
+    // The regions that now meet: those that were behind the region in between.
+    const auto other = [](const Face& face, const Face& rival) {
+        return face.back == rival.back || face.back == rival.front ? face.front : face.back;
+    };
+    bench.events.push_back(
+        {TopologyEvent::Kind::kMerge, (1.0 / 3.0) * (s[0] + s[1] + s[2]), other(one, two), other(two, one)});
+    ++bench.report.merges;
+    bench.topology_changed = true;
+    return true;
+}
+
+}  // namespace
+
+void merge_close_faces(Workbench& bench) {
+    EditMesh& mesh = bench.mesh;
+    for (const ClosePair& pair : close_pairs(bench)) {
+        // An earlier merge may have changed or taken either.
+        if (!mesh.alive(pair.f) || !mesh.alive(pair.g) || !face_each_other(mesh, pair.f, pair.g)) continue;
+        merge(bench, pair.f, pair.g);
+    }
+}
+
+}  // namespace lamella::mesh::detail

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "lamella/mesh/foam_mesh.h"
+
+namespace lamella::mesh {
+
+/// How a mesh is kept even. Lengths and volumes in units of the wanted edge length h, angles in degrees.
+struct TrackerOptions {
+    double edge_length = 0.0;       ///< h [m]
+    double longest_edge = 1.45;     ///< longer ones are split
+    double shortest_edge = 0.55;    ///< shorter ones are collapsed
+    double irregular_edge = 0.25;   ///< only edges shorter than this collapse onto other triple lines (then: T1)
+    double kept_irregular_edge = 0.1;  ///< below this the crossing is kept even when it cannot be separated yet
+    double separation = 0.15;       ///< how far each copy of a separated vertex moves
+    double merge_distance = 0.15;   ///< films this close that face each other become one
+    double longest_step = 0.15;     ///< no vertex moves farther in one `move`
+    double least_volume = 0.5;      ///< smaller regions are absorbed by a neighbor [h^3]
+    bool merging = true;            ///< films that touch become one
+    bool separating = true;         ///< T1 and pinch
+};
+
+/// Something that changed which region touches which.
+struct TopologyEvent {
+    enum class Kind { kT1, kPinch, kMerge, kSplit, kAbsorb, kPop };
+    Kind kind;
+    Vec3 position;                  ///< where [m]
+    RegionId a = kOutside;          ///< merge: the regions that met; split: old and new; absorb, pop: gone and heir;
+    RegionId b = kOutside;          ///< t1: the regions that parted
+};
+std::string_view name(TopologyEvent::Kind kind);
+
+/// How the values of a vertex follow from values before an edit: value = sum of weight * value(parent).
+struct Resampling {
+    VertexId vertex;                ///< new, or with a new place
+    std::span<const VertexId> parents;
+    std::span<const double> weights;
+};
+
+/// What one `remesh` did.
+struct RemeshReport {
+    int splits = 0, collapses = 0, flips = 0, separations = 0, merges = 0, absorbed = 0;
+    int stuck = 0;                  ///< vertices that no accepted edit makes regular for now
+    bool changed() const { return splits + collapses + flips + separations + merges + absorbed > 0; }
+};
+
+/// Old to new ids after a compaction; kNoVertex and kNoFace for what is gone.
+struct CompactionMaps {
+    IdVector<VertexId, VertexId> vertex;
+    IdVector<FaceId, FaceId> face;
+};
+
+/// Keeps a foam mesh even, free of intersections and topologically right while its films move.
+///
+/// Every edit is a transaction, accepted only after local checks (labels, shape, label cycles, exact intersections)
+/// and otherwise taken back. docs/mesh.md tells the whole recipe. Deterministic: the same calls give the same bits on
+/// any number of threads. The mesh between two calls obeys all rules of FoamMesh.
+class Tracker {
+public:
+    /// @throws InputError  the mesh breaks a rule (mesh/check.h), is periodic, or the edge length is not positive
+    Tracker(FoamMesh mesh, const TrackerOptions& options);
+    ~Tracker();
+    Tracker(Tracker&&) noexcept;
+    Tracker& operator=(Tracker&&) noexcept;
+
+    const FoamMesh& mesh() const;
+    const TrackerOptions& options() const;
+
+    /// Called for every accepted edit that gives a vertex a new value or place.
+    void set_resampler(std::function<void(const Resampling&)> resampler);
+
+    /// Moves the vertices as far along `displacement` [m] as is safe: no vertex farther than the longest step, and no
+    /// two primitives (vertex and face, edge and edge) by more than 0.9 of their distance together, so that nothing
+    /// can cross. Vertices on wires move as told too: the caller knows where the wire goes.
+    struct MoveReport {
+        std::size_t limited = 0;  ///< vertices that did not go all the way
+    };
+    MoveReport move(const IdVector<VertexId, Vec3>& displacement);
+
+    /// One cycle: merge, split, collapse, flip, separate, relabel, absorb, compact.
+    RemeshReport remesh();
+
+    /// Bursts the films between two regions: `region` joins `into`, which gets its target volume.
+    /// @throws InputError  there is no such region, or the two share no film
+    void pop(RegionId region, RegionId into);
+
+    void set_target_volume(RegionId region, double volume);
+
+    /// Topological events since the last call.
+    std::vector<TopologyEvent> take_events();
+    /// From the mesh before the last remesh or pop to the mesh now.
+    const CompactionMaps& maps() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lamella::mesh
