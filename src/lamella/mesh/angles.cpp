@@ -1,14 +1,14 @@
 #include "lamella/mesh/angles.h"
 
+#include "lamella/mesh/detail/edge_faces.h"
+#include "lamella/mesh/detail/film_direction.h"
+#include "lamella/mesh/detail/triangle.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <optional>
-
-#include "lamella/mesh/detail/edge_faces.h"
-#include "lamella/mesh/detail/film_direction.h"
-#include "lamella/mesh/detail/triangle.h"
 
 namespace lamella::mesh {
 namespace {
@@ -39,7 +39,8 @@ std::optional<std::array<RegionId, 3>> triple_regions(const FoamMesh& mesh, cons
 ///
 /// Going around the edge direction counterclockwise, one of the two films has r ahead of it. A face that runs forward
 /// along the edge has its front ahead, since then its normal is along x (its direction).
-double angle_inside(RegionId r, const Face& face, bool forward, const Vec3& film, const Vec3& other, const Vec3& along) {
+double angle_inside(
+    RegionId r, const Face& face, bool forward, const Vec3& film, const Vec3& other, const Vec3& along) {
     const bool is_ahead = (forward ? face.front : face.back) == r;
     const double sine = dot(cross(film, other), along);
     const double turn = std::atan2(is_ahead ? sine : -sine, dot(film, other));
@@ -60,8 +61,7 @@ std::array<double, 3> angles_around(const FoamMesh& mesh,
             if (face.back == regions[k] || face.front == regions[k]) side[found++] = i;
         }
         const EdgeUse& use = uses[side[0]];
-        angle[k] =
-            angle_inside(regions[k], mesh.faces[use.face], use.forward, film[side[0]], film[side[1]], along);
+        angle[k] = angle_inside(regions[k], mesh.faces[use.face], use.forward, film[side[0]], film[side[1]], along);
     }
     return angle;
 }

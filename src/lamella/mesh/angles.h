@@ -1,10 +1,10 @@
 #pragma once
 
+#include "lamella/mesh/foam_mesh.h"
+
 #include <array>
 #include <cstdint>
 #include <vector>
-
-#include "lamella/mesh/foam_mesh.h"
 
 // Angles of Plateau's laws: at rest three films meet at 120 degrees along a triple line, and four triple lines meet at
 // acos(-1/3) = 109.47 degrees in a junction point.

@@ -1,12 +1,12 @@
 #include "lamella/mesh/area.h"
 
-#include <algorithm>
-#include <map>
-#include <utility>
-
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/mesh/detail/triangle.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
 
 namespace lamella::mesh {
 namespace {

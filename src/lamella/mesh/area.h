@@ -1,8 +1,8 @@
 #pragma once
 
-#include <vector>
-
 #include "lamella/mesh/foam_mesh.h"
+
+#include <vector>
 
 // Areas of the films and how they change with the vertices. Each triangle contributes on its own, so everything holds
 // on any mesh: around triple lines, on wires and in periodic foams.

@@ -1,9 +1,9 @@
 #include "lamella/mesh/cotan_laplacian.h"
 
-#include <algorithm>
-
 #include "lamella/mesh/detail/triangle.h"
 #include "lamella/mesh/detail/vertex_corners.h"
+
+#include <algorithm>
 
 namespace lamella::mesh {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "lamella/mesh/foam_mesh.h"
+
 #include <cstddef>
 #include <vector>
-
-#include "lamella/mesh/foam_mesh.h"
 
 namespace lamella::mesh {
 

@@ -1,10 +1,10 @@
 #include "lamella/mesh/mean_curvature.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "lamella/mesh/detail/edge_faces.h"
 #include "lamella/mesh/detail/triangle.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace lamella::mesh {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <vector>
-
 #include "lamella/mesh/foam_mesh.h"
 #include "lamella/mesh/vertex_regions.h"
+
+#include <vector>
 
 // Mean curvature of the region surfaces, integrated: kappa_1 + kappa_2 (not its half), positive where the region bulges
 // out. Seen from the two regions of a film it has opposite signs.

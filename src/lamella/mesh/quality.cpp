@@ -1,12 +1,12 @@
 #include "lamella/mesh/quality.h"
 
+#include "lamella/mesh/detail/edge_faces.h"
+#include "lamella/mesh/detail/triangle.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
-
-#include "lamella/mesh/detail/edge_faces.h"
-#include "lamella/mesh/detail/triangle.h"
 
 namespace lamella::mesh {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cstddef>
-
 #include "lamella/mesh/foam_mesh.h"
+
+#include <cstddef>
 
 namespace lamella::mesh {
 

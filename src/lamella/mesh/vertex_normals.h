@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cstdint>
-
 #include "lamella/mesh/foam_mesh.h"
+
+#include <cstdint>
 
 namespace lamella::mesh {
 

@@ -1,8 +1,8 @@
 #include "lamella/mesh/vertex_regions.h"
 
-#include <algorithm>
-
 #include "lamella/mesh/detail/vertex_corners.h"
+
+#include <algorithm>
 
 namespace lamella::mesh {
 

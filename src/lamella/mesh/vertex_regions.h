@@ -1,12 +1,12 @@
 #pragma once
 
+#include "lamella/mesh/foam_mesh.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
-
-#include "lamella/mesh/foam_mesh.h"
 
 namespace lamella::mesh {
 

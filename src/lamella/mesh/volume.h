@@ -1,9 +1,9 @@
 #pragma once
 
-#include <vector>
-
 #include "lamella/mesh/foam_mesh.h"
 #include "lamella/mesh/vertex_regions.h"
+
+#include <vector>
 
 namespace lamella::mesh {
 
@@ -20,8 +20,8 @@ IdVector<RegionId, double> region_volumes(const FoamMesh& mesh);
 
 /// Gradients of the region volumes with respect to the vertices.
 struct VolumeGradient {
-    VertexRegions entries;     ///< which vertex touches which region
-    std::vector<Vec3> value;   ///< dV_r / dx_v [m^2], one per entry
+    VertexRegions entries;    ///< which vertex touches which region
+    std::vector<Vec3> value;  ///< dV_r / dx_v [m^2], one per entry
 
     /// dV_r / dx_v, zero where they do not touch.
     Vec3 at(VertexId v, RegionId r) const {

@@ -1,13 +1,13 @@
 #pragma once
 
+#include "lamella/mesh/foam_mesh.h"
+
 #include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include "lamella/mesh/foam_mesh.h"
 
 namespace lamella::mesh::detail {
 

@@ -1,10 +1,10 @@
 #include "lamella/mesh/detail/film_direction.h"
 
-#include <algorithm>
-#include <vector>
-
 #include "lamella/mesh/detail/quadratic_slope.h"
 #include "lamella/mesh/detail/triangle.h"
+
+#include <algorithm>
+#include <vector>
 
 namespace lamella::mesh::detail {
 namespace {
@@ -67,8 +67,8 @@ Vec3 quadratic_film_direction(const FoamMesh& mesh, const VertexCorners& corners
         points.push_back({{dot(r, along), dot(r, flat), dot(r, normal)}});
     }
     const auto slope = quadratic_slope(points, norm(edge));
-    // The patch is tangent to along + slope_u normal and to flat + slope_v normal. Its tangent perpendicular to the edge
-    // is the second one to first order in slope_u, which vanishes like h^2.
+    // The patch is tangent to along + slope_u normal and to flat + slope_v normal. Its tangent perpendicular to the
+    // edge is the second one to first order in slope_u, which vanishes like h^2.
     return slope ? direction(flat + (*slope)[1] * normal) : flat;
 }
 

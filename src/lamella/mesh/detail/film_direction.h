@@ -1,11 +1,11 @@
 #pragma once
 
-#include <cstddef>
-
 #include "lamella/core/vec.h"
 #include "lamella/mesh/detail/edge_faces.h"
 #include "lamella/mesh/detail/vertex_corners.h"
 #include "lamella/mesh/foam_mesh.h"
+
+#include <cstddef>
 
 namespace lamella::mesh::detail {
 

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "lamella/core/vec.h"
+
 #include <optional>
 #include <span>
-
-#include "lamella/core/vec.h"
 
 namespace lamella::mesh::detail {
 

@@ -1,11 +1,11 @@
 #pragma once
 
+#include "lamella/mesh/foam_mesh.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-
-#include "lamella/mesh/foam_mesh.h"
 
 namespace lamella::mesh::detail {
 

@@ -1,11 +1,11 @@
 #pragma once
 
+#include "lamella/mesh/foam_mesh.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include "lamella/mesh/foam_mesh.h"
 
 namespace lamella::mesh::detail {
 
