@@ -1,0 +1,169 @@
+#include "lamella/mesh/angles.h"
+
+#include "lamella/mesh/detail/edge_faces.h"
+#include "lamella/mesh/detail/film_direction.h"
+#include "lamella/mesh/detail/triangle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+namespace lamella::mesh {
+namespace {
+
+using detail::EdgeFaces;
+using detail::EdgeUse;
+
+bool on_wire(const FoamMesh& mesh, const detail::EdgeKey& edge) {
+    return mesh.on_wire[edge.a] != 0 && mesh.on_wire[edge.b] != 0;
+}
+
+/// The three regions around an edge, or nothing if it is no free triple edge.
+std::optional<std::array<RegionId, 3>> triple_regions(const FoamMesh& mesh, const EdgeFaces& edges, std::size_t e) {
+    const auto uses = edges.of(e);
+    if (uses.size() != 3 || on_wire(mesh, edges.edge[e])) return std::nullopt;
+    std::array<RegionId, 6> sides{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        sides[2 * i] = mesh.faces[uses[i].face].back;
+        sides[2 * i + 1] = mesh.faces[uses[i].face].front;
+    }
+    std::ranges::sort(sides);
+    const bool paired = sides[0] == sides[1] && sides[2] == sides[3] && sides[4] == sides[5];
+    if (!paired || sides[1] == sides[2] || sides[3] == sides[4]) return std::nullopt;
+    return std::array{sides[0], sides[2], sides[4]};
+}
+
+/// The angle inside region r between two films that leave an edge, each perpendicular to it.
+///
+/// Going around the edge direction counterclockwise, one of the two films has r ahead of it. A face that runs forward
+/// along the edge has its front ahead, since then its normal is along x (its direction).
+double angle_inside(
+    RegionId r, const Face& face, bool forward, const Vec3& film, const Vec3& other, const Vec3& along) {
+    const bool is_ahead = (forward ? face.front : face.back) == r;
+    const double sine = dot(cross(film, other), along);
+    const double turn = std::atan2(is_ahead ? sine : -sine, dot(film, other));
+    return turn < 0.0 ? turn + 2.0 * std::numbers::pi : turn;
+}
+
+std::array<double, 3> angles_around(const FoamMesh& mesh,
+                                    std::span<const EdgeUse> uses,
+                                    const std::array<RegionId, 3>& regions,
+                                    const std::array<Vec3, 3>& film) {
+    const Vec3 along = detail::direction(detail::edge_vector(mesh, uses[0]));
+    std::array<double, 3> angle{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        std::array<std::size_t, 2> side{};
+        std::size_t found = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Face& face = mesh.faces[uses[i].face];
+            if (face.back == regions[k] || face.front == regions[k]) side[found++] = i;
+        }
+        const EdgeUse& use = uses[side[0]];
+        angle[k] = angle_inside(regions[k], mesh.faces[use.face], use.forward, film[side[0]], film[side[1]], along);
+    }
+    return angle;
+}
+
+/// A step along a triple line.
+struct LineStep {
+    VertexId to;
+    Vec3 vector;  // [m]
+};
+
+using TripleLines = std::map<VertexId, std::vector<LineStep>>;
+
+TripleLines triple_lines(const FoamMesh& mesh) {
+    const EdgeFaces edges = detail::edge_faces(mesh);
+    TripleLines lines;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (!triple_regions(mesh, edges, e)) continue;
+        const Vec3 vector = detail::edge_vector(mesh, edges.of(e).front());
+        lines[edges.edge[e].a].push_back({edges.edge[e].b, vector});
+        lines[edges.edge[e].b].push_back({edges.edge[e].a, -vector});
+    }
+    return lines;
+}
+
+/// Tangent at the start of the parabola through 0, p and p + q, parametrized by chord length:
+/// the derivative of the interpolating polynomial, p/|p| + (p/|p| - q/|q|) |p| / (|p| + |q|).
+Vec3 parabola_tangent(const Vec3& p, const Vec3& q) {
+    const double a = norm(p);
+    const double b = norm(q);
+    return detail::direction(p / a + (a / (a + b)) * (p / a - q / b));
+}
+
+Vec3 line_direction(const TripleLines& lines, VertexId from, const LineStep& step, AngleMethod method) {
+    const std::vector<LineStep>& onward = lines.at(step.to);
+    if (method == AngleMethod::kFlat || onward.size() != 2) return detail::direction(step.vector);
+    return parabola_tangent(step.vector, onward[onward[0].to == from ? 1 : 0].vector);
+}
+
+double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
+
+}  // namespace
+
+std::vector<TripleEdgeAngles> triple_edge_angles(const FoamMesh& mesh, AngleMethod method) {
+    const EdgeFaces edges = detail::edge_faces(mesh);
+    const detail::VertexCorners corners = detail::vertex_corners(mesh);
+    std::vector<TripleEdgeAngles> result;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const auto regions = triple_regions(mesh, edges, e);
+        if (!regions) continue;
+        const auto uses = edges.of(e);
+        std::array<Vec3, 3> film;
+        for (std::size_t i = 0; i < 3; ++i)
+            film[i] = method == AngleMethod::kFlat ? detail::flat_film_direction(mesh, uses[i])
+                                                   : detail::quadratic_film_direction(mesh, corners, uses[i]);
+        result.push_back({edges.edge[e].a, edges.edge[e].b, norm(detail::edge_vector(mesh, uses[0])), *regions,
+                          angles_around(mesh, uses, *regions, film)});
+    }
+    return result;
+}
+
+std::vector<JunctionAngles> junction_angles(const FoamMesh& mesh, AngleMethod method) {
+    const TripleLines lines = triple_lines(mesh);
+    std::vector<JunctionAngles> result;
+    for (const auto& [vertex, steps] : lines) {
+        if (steps.size() < 3) continue;
+        JunctionAngles junction{vertex, {}};
+        for (std::size_t i = 0; i < steps.size(); ++i)
+            for (std::size_t j = i + 1; j < steps.size(); ++j)
+                junction.angle.push_back(angle_between(line_direction(lines, vertex, steps[i], method),
+                                                       line_direction(lines, vertex, steps[j], method)));
+        result.push_back(std::move(junction));
+    }
+    return result;
+}
+
+AngleDeviation deviation_from_plateau(const std::vector<TripleEdgeAngles>& angles) {
+    constexpr double kLaw = 2.0 * std::numbers::pi / 3.0;
+    AngleDeviation deviation;
+    double total_length = 0.0;
+    for (const TripleEdgeAngles& edge : angles) {
+        total_length += edge.length;
+        for (const double angle : edge.angle) {
+            deviation.mean += edge.length * std::abs(angle - kLaw) / 3.0;
+            deviation.largest = std::max(deviation.largest, std::abs(angle - kLaw));
+        }
+    }
+    if (total_length > 0.0) deviation.mean /= total_length;
+    return deviation;
+}
+
+AngleDeviation deviation_from_plateau(const std::vector<JunctionAngles>& angles) {
+    const double law = std::acos(-1.0 / 3.0);
+    AngleDeviation deviation;
+    double count = 0.0;
+    for (const JunctionAngles& junction : angles)
+        for (const double angle : junction.angle) {
+            count += 1.0;
+            deviation.mean += std::abs(angle - law);
+            deviation.largest = std::max(deviation.largest, std::abs(angle - law));
+        }
+    if (count > 0.0) deviation.mean /= count;
+    return deviation;
+}
+
+}  // namespace lamella::mesh

@@ -1,0 +1,28 @@
+#include "lamella/mesh/vertex_regions.h"
+
+#include "lamella/mesh/detail/vertex_corners.h"
+
+#include <algorithm>
+
+namespace lamella::mesh {
+
+VertexRegions vertex_regions(const FoamMesh& mesh, WhichRegions which) {
+    const detail::VertexCorners corners = detail::vertex_corners(mesh);
+    VertexRegions regions;
+    regions.start.reserve(mesh.position.size() + 1);
+    regions.start.push_back(0);
+    std::vector<RegionId> row;
+    for (const VertexId v : mesh.position.ids()) {
+        row.clear();
+        for (const detail::Corner& corner : corners.of(v))
+            for (const RegionId r : {mesh.faces[corner.face].back, mesh.faces[corner.face].front})
+                if (which == WhichRegions::kAll || mesh.regions[r].kind == RegionKind::kClosed) row.push_back(r);
+        std::ranges::sort(row);
+        const auto repeated = std::ranges::unique(row);
+        regions.region.insert(regions.region.end(), row.begin(), repeated.begin());
+        regions.start.push_back(regions.region.size());
+    }
+    return regions;
+}
+
+}  // namespace lamella::mesh
