@@ -25,6 +25,8 @@ enum class RandomStream : std::uint32_t {
     kBubbleJitter = 2,    ///< displacement from the points of a grid
     kBubbleRadius = 3,    ///< initial size distribution
     kFilmRupture = 4,     ///< which film bursts, and when
+    kClusterPosition = 5, ///< bubbles of a cluster before they are packed
+    kMeshJitter = 6,      ///< vertices off the planes of a grid
 };
 
 /// 128 random bits.
