@@ -43,14 +43,20 @@ std::vector<ShortEdge> short_edges(const Workbench& bench) {
     return edges;
 }
 
-/// How a vertex is bound: on a wire, at a junction, on a triple line, inside a film. The more bound one stays.
-int rank(const EditMesh& mesh, VertexId v) {
-    if (mesh.on_wire(v)) return 1000;
-    SmallVector<RegionId, 8> regions;
-    for (const FaceId f : mesh.faces_at(v))
+using RegionList = SmallVector<RegionId, 8>;
+
+template <class Faces>
+RegionList regions_of(const EditMesh& mesh, const Faces& faces) {
+    RegionList regions;
+    for (const FaceId f : faces)
         for (const RegionId r : {mesh.face(f).back, mesh.face(f).front})
             if (!regions.contains(r)) regions.push_back(r);
-    return static_cast<int>(regions.size());
+    return regions;
+}
+
+/// How a vertex is bound: on a wire, at a junction, on a triple line, inside a film. The more bound one stays.
+int rank(const EditMesh& mesh, VertexId v) {
+    return mesh.on_wire(v) ? 1000 : static_cast<int>(regions_of(mesh, mesh.faces_at(v)).size());
 }
 
 SmallVector<VertexId, 12> neighbors(const EditMesh& mesh, VertexId v) {
@@ -78,6 +84,7 @@ private:
     bool turns_too_far() const;
     bool sweeps_through_film(VertexId v, const Vec3& from, const Vec3& to) const;
     bool stays_regular();
+    bool undoes_itself(const TopologyEvent& parted) const;
     std::optional<Separation> separate(double sharpest);
 
     Workbench& bench_;
@@ -90,6 +97,7 @@ private:
     std::vector<FaceId> star_;
     std::vector<MovingFace> surviving_;
     SmallVector<VertexId, 8> common_;
+    RegionList beyond_kept_, beyond_gone_;  // regions at one end of the edge and not around it
     StarVolumes volumes_;
 };
 
@@ -113,6 +121,15 @@ Collapse::Collapse(Workbench& bench, VertexId v, VertexId w) : bench_(bench), me
                     if (u != kept_ && u != gone_) common_.push_back(u);
         }
     volumes_ = star_volumes(mesh_, star_, kept_at_);
+    const RegionList around = regions_of(mesh_, mesh_.faces_on(kept_, gone_));
+    const auto beyond = [&](VertexId end) {
+        RegionList regions;
+        for (const RegionId r : regions_of(mesh_, mesh_.faces_at(end)))
+            if (!around.contains(r)) regions.push_back(r);
+        return regions;
+    };
+    beyond_kept_ = beyond(kept_);
+    beyond_gone_ = beyond(gone_);
 }
 
 bool Collapse::run() {
@@ -180,11 +197,22 @@ bool Collapse::stays_regular() {
     return true;
 }
 
+/// A separation of what the two ends had beyond the edge gives the edge back: nothing happened but a longer edge.
+bool Collapse::undoes_itself(const TopologyEvent& parted) const {
+    if (parted.kind != TopologyEvent::Kind::kT1) return false;
+    return (beyond_kept_.contains(parted.a) && beyond_gone_.contains(parted.b)) ||
+           (beyond_kept_.contains(parted.b) && beyond_gone_.contains(parted.a));
+}
+
 /// An irregular collapse is the first half of a T1: the other half is tried at once.
 std::optional<Separation> Collapse::separate(double sharpest) {
     const auto part = [&](VertexId v) -> std::optional<Separation> {
         if (mesh_.faces_at(v).empty() || mesh_.on_wire(v) || is_regular(mesh_, v)) return std::nullopt;
-        return separate_vertex(bench_, v, volumes_, kept_at_, sharpest);
+        const std::size_t mark = mesh_.mark();
+        auto parted = separate_vertex(bench_, v, volumes_, kept_at_, sharpest);
+        if (!parted || !undoes_itself(parted->event)) return parted;
+        mesh_.rollback_to(mark);
+        return std::nullopt;
     };
     auto parted = part(kept_);
     for (std::size_t i = 0; i < common_.size() && !parted; ++i) parted = part(common_[i]);
