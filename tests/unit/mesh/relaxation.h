@@ -46,6 +46,27 @@ inline void add_sphere(FoamMesh& mesh, const Vec3& center, double radius, int le
         mesh.add_face(VertexId(first + a), VertexId(first + b), VertexId(first + c), inside, outside);
 }
 
+/// A film between two rings of radius 1, a cylinder at first: region 1 inside, 0 outside.
+inline FoamMesh film_between_rings(double separation, int segments, int rows) {
+    FoamMesh mesh;
+    mesh.regions.push_back({RegionKind::kOpen, 0.0});
+    mesh.regions.push_back({RegionKind::kOpen, 0.0});
+    for (int row = 0; row <= rows; ++row)
+        for (int s = 0; s < segments; ++s) {
+            const double angle = 2.0 * 3.14159265358979 * (s + 0.5 * (row % 2)) / segments;
+            mesh.add_vertex({{std::cos(angle), std::sin(angle), separation * (static_cast<double>(row) / rows - 0.5)}},
+                            row == 0 || row == rows);
+        }
+    const auto at = [&](int row, int s) { return static_cast<VertexId>(row * segments + (s + segments) % segments); };
+    for (int row = 0; row < rows; ++row)
+        for (int s = 0; s < segments; ++s) {
+            const int shift = row % 2;
+            mesh.add_face(at(row, s), at(row, s + 1), at(row + 1, s + shift), RegionId{1}, kOutside);
+            mesh.add_face(at(row, s + 1 - shift), at(row + 1, s + 1), at(row + 1, s), RegionId{1}, kOutside);
+        }
+    return mesh;
+}
+
 inline FoamMesh spheres(const std::vector<std::pair<Vec3, double>>& balls, int levels) {
     FoamMesh mesh;
     mesh.regions.push_back({RegionKind::kOpen, 0.0});
@@ -133,6 +154,12 @@ struct Flow {
         last = tracker.remesh();
     }
 
+    /// The volumes alone, where no remeshing follows.
+    void settle_volumes() {
+        step = 0.0;
+        for (int round = 0; round < 4; ++round) tracker.move(displacement());
+    }
+
     /// Down the area gradient over lumped masses, tangential smoothing, and the way back to the target volumes.
     IdVector<VertexId, Vec3> displacement() const {
         const FoamMesh& mesh = tracker.mesh();
@@ -152,7 +179,7 @@ struct Flow {
                 stiffness[f.vertices[k]] += opposite[k] / (4.0 * area);
             }
         }
-        IdVector<VertexId, Vec3> d = tangential_smoothing(mesh);
+        IdVector<VertexId, Vec3> d = tangential_smoothing(mesh, step > 0.0 ? 0.15 : 0.0);
         for (const VertexId v : d.ids()) {
             mass[v] = std::max(mass[v], 1.2 * dt * stiffness[v]);
             if (mesh.on_wire[v] == 0) d[v] -= (dt / mass[v]) * gradient[v];
