@@ -11,10 +11,8 @@ namespace lamella {
 /// The place of an element in its columns. Ids are enumerations over an unsigned integer: one kind of id does not
 /// convert to another, nor to a number without being asked.
 template <class Id>
-    requires std::is_enum_v<Id>
-constexpr std::size_t index(Id id) {
-    return static_cast<std::size_t>(id);
-}
+requires std::is_enum_v<Id>
+constexpr std::size_t index(Id id) { return static_cast<std::size_t>(id); }
 
 /// A column: one value per element of one kind, addressed by that kind's id only.
 template <class Id, class T>

@@ -11,7 +11,7 @@ namespace lamella {
 
 /// A short list of plain values: the first `N` lie in the object itself, more of them on the heap.
 template <class T, std::size_t N>
-    requires std::is_trivially_copyable_v<T>
+requires std::is_trivially_copyable_v<T>
 class SmallVector {
 public:
     using value_type = T;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cmath>
-
 #include "lamella/core/vec.h"
+
+#include <cmath>
 
 namespace lamella::geometry {
 
@@ -26,8 +26,8 @@ inline int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) 
     const double zx = v[2] * w[0], xz = v[0] * w[2];
     const double xy = v[0] * w[1], yx = v[1] * w[0];
     const double det = u[0] * (yz - zy) + u[1] * (zx - xz) + u[2] * (xy - yx);
-    const double size = std::abs(u[0]) * (std::abs(yz) + std::abs(zy)) + std::abs(u[1]) * (std::abs(zx) + std::abs(xz)) +
-                        std::abs(u[2]) * (std::abs(xy) + std::abs(yx));
+    const double size = std::abs(u[0]) * (std::abs(yz) + std::abs(zy)) +
+                        std::abs(u[1]) * (std::abs(zx) + std::abs(xz)) + std::abs(u[2]) * (std::abs(xy) + std::abs(yx));
     const double bound = kBound * size;
     if (det > bound) return 1;
     if (det < -bound) return -1;

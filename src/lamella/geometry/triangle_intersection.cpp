@@ -1,9 +1,9 @@
 #include "lamella/geometry/triangle_intersection.h"
 
+#include "lamella/geometry/predicates.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "lamella/geometry/predicates.h"
 
 namespace lamella::geometry {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <array>
-
 #include "lamella/core/vec.h"
+
+#include <array>
 
 namespace lamella::geometry {
 

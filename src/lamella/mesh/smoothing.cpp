@@ -1,10 +1,10 @@
 #include "lamella/mesh/smoothing.h"
 
+#include "lamella/mesh/detail/face_shape.h"
+
 #include <algorithm>
 #include <array>
 #include <vector>
-
-#include "lamella/mesh/detail/face_shape.h"
 
 namespace lamella::mesh {
 namespace {
@@ -14,7 +14,7 @@ struct Surroundings {
     Vec3 normal, centroid;  // weighted by twice the area
     double weight = 0.0;
     RegionId back{}, front{};
-    bool film = true;       // all faces lie between the same two regions
+    bool film = true;  // all faces lie between the same two regions
     bool seen = false;
 
     void add(const Face& face, const Vec3& middle, const Vec3& area_vector) {

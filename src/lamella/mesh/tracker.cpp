@@ -1,25 +1,31 @@
 #include "lamella/mesh/tracker.h"
 
-#include <cmath>
-#include <optional>
-#include <utility>
-
-#include <fmt/format.h>
-
 #include "lamella/core/error.h"
 #include "lamella/mesh/detail/motion.h"
 #include "lamella/mesh/detail/workbench.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
 
 namespace lamella::mesh {
 
 std::string_view name(TopologyEvent::Kind kind) {
     switch (kind) {
-        case TopologyEvent::Kind::kT1: return "t1";
-        case TopologyEvent::Kind::kPinch: return "pinch";
-        case TopologyEvent::Kind::kMerge: return "merge";
-        case TopologyEvent::Kind::kSplit: return "split";
-        case TopologyEvent::Kind::kAbsorb: return "absorb";
-        case TopologyEvent::Kind::kPop: return "pop";
+        case TopologyEvent::Kind::kT1:
+            return "t1";
+        case TopologyEvent::Kind::kPinch:
+            return "pinch";
+        case TopologyEvent::Kind::kMerge:
+            return "merge";
+        case TopologyEvent::Kind::kSplit:
+            return "split";
+        case TopologyEvent::Kind::kAbsorb:
+            return "absorb";
+        case TopologyEvent::Kind::kPop:
+            return "pop";
     }
     return "";
 }
@@ -52,7 +58,8 @@ Tracker::Tracker(FoamMesh mesh, const TrackerOptions& options) {
         throw InputError(fmt::format("the edge length must be positive (got {})", options.edge_length));
     if (mesh.periodic()) throw InputError("a mesh in a periodic box cannot change its triangles yet");
     constexpr double kCell = 1.5;  // of the grid, in edges
-    impl_ = std::make_unique<Impl>(Impl{options, detail::EditMesh(std::move(mesh), kCell * options.edge_length), {}, {}, {}});
+    impl_ = std::make_unique<Impl>(
+        Impl{options, detail::EditMesh(std::move(mesh), kCell * options.edge_length), {}, {}, {}});
 }
 
 Tracker::~Tracker() = default;
@@ -63,8 +70,12 @@ const FoamMesh& Tracker::mesh() const { return impl_->mesh.mesh(); }
 const TrackerOptions& Tracker::options() const { return impl_->options; }
 const CompactionMaps& Tracker::maps() const { return impl_->maps; }
 std::vector<TopologyEvent> Tracker::take_events() { return std::exchange(impl_->events, {}); }
-void Tracker::set_resampler(std::function<void(const Resampling&)> resampler) { impl_->resampler = std::move(resampler); }
-void Tracker::set_target_volume(RegionId region, double volume) { impl_->mesh.regions()[region].target_volume = volume; }
+void Tracker::set_resampler(std::function<void(const Resampling&)> resampler) {
+    impl_->resampler = std::move(resampler);
+}
+void Tracker::set_target_volume(RegionId region, double volume) {
+    impl_->mesh.regions()[region].target_volume = volume;
+}
 
 Tracker::MoveReport Tracker::move(const IdVector<VertexId, Vec3>& displacement) {
     detail::EditMesh& mesh = impl_->mesh;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "lamella/mesh/foam_mesh.h"
+
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -7,38 +9,36 @@
 #include <string_view>
 #include <vector>
 
-#include "lamella/mesh/foam_mesh.h"
-
 namespace lamella::mesh {
 
 /// How a mesh is kept even. Lengths and volumes in units of the wanted edge length h, angles in degrees.
 struct TrackerOptions {
-    double edge_length = 0.0;       ///< h [m]
-    double longest_edge = 1.45;     ///< longer ones are split
-    double shortest_edge = 0.55;    ///< shorter ones are collapsed
-    double irregular_edge = 0.25;   ///< only edges shorter than this collapse onto other triple lines (then: T1)
+    double edge_length = 0.0;          ///< h [m]
+    double longest_edge = 1.45;        ///< longer ones are split
+    double shortest_edge = 0.55;       ///< shorter ones are collapsed
+    double irregular_edge = 0.25;      ///< only edges shorter than this collapse onto other triple lines (then: T1)
     double kept_irregular_edge = 0.1;  ///< below this the crossing is kept even when it cannot be separated yet
-    double separation = 0.15;       ///< how far each copy of a separated vertex moves
-    double merge_distance = 0.15;   ///< films this close that face each other become one
-    double longest_step = 0.15;     ///< no vertex moves farther in one `move`
-    double least_volume = 0.5;      ///< smaller regions are absorbed by a neighbor [h^3]
-    bool merging = true;            ///< films that touch become one
-    bool separating = true;         ///< T1 and pinch
+    double separation = 0.15;          ///< how far each copy of a separated vertex moves
+    double merge_distance = 0.15;      ///< films this close that face each other become one
+    double longest_step = 0.15;        ///< no vertex moves farther in one `move`
+    double least_volume = 0.5;         ///< smaller regions are absorbed by a neighbor [h^3]
+    bool merging = true;               ///< films that touch become one
+    bool separating = true;            ///< T1 and pinch
 };
 
 /// Something that changed which region touches which.
 struct TopologyEvent {
     enum class Kind { kT1, kPinch, kMerge, kSplit, kAbsorb, kPop };
     Kind kind;
-    Vec3 position;                  ///< where [m]
-    RegionId a = kOutside;          ///< merge: the regions that met; split: old and new; absorb, pop: gone and heir;
-    RegionId b = kOutside;          ///< t1: the regions that parted
+    Vec3 position;          ///< where [m]
+    RegionId a = kOutside;  ///< merge: the regions that met; split: old and new; absorb, pop: gone and heir;
+    RegionId b = kOutside;  ///< t1: the regions that parted
 };
 std::string_view name(TopologyEvent::Kind kind);
 
 /// How the values of a vertex follow from values before an edit: value = sum of weight * value(parent).
 struct Resampling {
-    VertexId vertex;                ///< new, or with a new place
+    VertexId vertex;  ///< new, or with a new place
     std::span<const VertexId> parents;
     std::span<const double> weights;
 };
@@ -46,7 +46,7 @@ struct Resampling {
 /// What one `remesh` did.
 struct RemeshReport {
     int splits = 0, collapses = 0, flips = 0, separations = 0, merges = 0, absorbed = 0;
-    int stuck = 0;                  ///< vertices that no accepted edit makes regular for now
+    int stuck = 0;  ///< vertices that no accepted edit makes regular for now
     bool changed() const { return splits + collapses + flips + separations + merges + absorbed > 0; }
 };
 

@@ -143,6 +143,15 @@ inline std::vector<std::string> faults(const FoamMesh& mesh) {
     return found;
 }
 
+inline double worst_volume_error(const FoamMesh& mesh) {
+    const auto volumes = region_volumes(mesh);
+    double worst = 0.0;
+    for (const RegionId r : mesh.regions.ids())
+        if (mesh.regions[r].kind == RegionKind::kClosed)
+            worst = std::max(worst, std::abs(volumes[r] / mesh.regions[r].target_volume - 1.0));
+    return worst;
+}
+
 /// Steps of area-gradient flow with the volumes of all closed regions held, through the tracker.
 struct Flow {
     Tracker tracker;
@@ -154,10 +163,12 @@ struct Flow {
         last = tracker.remesh();
     }
 
-    /// The volumes alone, where no remeshing follows.
+    /// Until the volumes are there: first with remeshing, then the positions alone. Where films are close a step goes
+    /// only part of the way, so that it takes several.
     void settle_volumes() {
+        for (int round = 0; round < 200 && worst_volume_error(tracker.mesh()) > 1e-3; ++round) advance();
         step = 0.0;
-        for (int round = 0; round < 4; ++round) tracker.move(displacement());
+        for (int round = 0; round < 50 && worst_volume_error(tracker.mesh()) > 1e-11; ++round) tracker.move(displacement());
     }
 
     /// Down the area gradient over lumped masses, tangential smoothing, and the way back to the target volumes.

@@ -1,9 +1,9 @@
-#include <algorithm>
-
 #include "lamella/geometry/triangle_intersection.h"
 #include "lamella/mesh/detail/face_shape.h"
 #include "lamella/mesh/detail/sectors.h"
 #include "lamella/mesh/detail/workbench.h"
+
+#include <algorithm>
 
 namespace lamella::mesh::detail {
 namespace {

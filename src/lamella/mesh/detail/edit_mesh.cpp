@@ -1,8 +1,8 @@
 #include "lamella/mesh/detail/edit_mesh.h"
 
-#include <algorithm>
-
 #include "lamella/core/error.h"
+
+#include <algorithm>
 
 namespace lamella::mesh::detail {
 namespace {
@@ -127,7 +127,9 @@ void EditMesh::rollback_to(std::size_t mark) {
                 mesh_.on_wire.pop_back();
                 faces_at_.pop_back();
                 break;
-            case Edit::kMoveVertex: mesh_.position[v] = entry.position; break;
+            case Edit::kMoveVertex:
+                mesh_.position[v] = entry.position;
+                break;
             case Edit::kAddFace:
                 detach(f);
                 mesh_.faces.pop_back();

@@ -1,13 +1,13 @@
 #pragma once
 
+#include "lamella/core/small_vector.h"
+#include "lamella/mesh/detail/face_grid.h"
+#include "lamella/mesh/foam_mesh.h"
+
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include "lamella/core/small_vector.h"
-#include "lamella/mesh/detail/face_grid.h"
-#include "lamella/mesh/foam_mesh.h"
 
 namespace lamella::mesh::detail {
 

@@ -5,9 +5,7 @@
 namespace lamella::mesh::detail {
 
 FaceGrid::FaceGrid(double cell, std::size_t faces)
-    : inverse_cell_(1.0 / cell),
-      mask_(std::bit_ceil(std::max<std::size_t>(faces, 64)) - 1),
-      buckets_(mask_ + 1) {}
+    : inverse_cell_(1.0 / cell), mask_(std::bit_ceil(std::max<std::size_t>(faces, 64)) - 1), buckets_(mask_ + 1) {}
 
 /// Two cells of a box may share a bucket: a face stands in it once.
 template <class Visit>

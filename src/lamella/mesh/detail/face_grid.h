@@ -1,15 +1,15 @@
 #pragma once
 
+#include "lamella/core/id_vector.h"
+#include "lamella/core/small_vector.h"
+#include "lamella/core/vec.h"
+#include "lamella/mesh/foam_mesh.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
-
-#include "lamella/core/id_vector.h"
-#include "lamella/core/small_vector.h"
-#include "lamella/core/vec.h"
-#include "lamella/mesh/foam_mesh.h"
 
 namespace lamella::mesh::detail {
 

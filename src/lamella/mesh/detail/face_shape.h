@@ -1,10 +1,10 @@
 #pragma once
 
+#include "lamella/core/vec.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "lamella/core/vec.h"
 
 namespace lamella::mesh::detail {
 

@@ -1,8 +1,8 @@
-#include <algorithm>
-#include <numbers>
-
 #include "lamella/mesh/detail/face_shape.h"
 #include "lamella/mesh/detail/workbench.h"
+
+#include <algorithm>
+#include <numbers>
 
 namespace lamella::mesh::detail {
 namespace {

@@ -1,9 +1,9 @@
-#include <algorithm>
-
 #include "lamella/geometry/triangle_intersection.h"
 #include "lamella/mesh/detail/face_shape.h"
 #include "lamella/mesh/detail/sectors.h"
 #include "lamella/mesh/detail/workbench.h"
+
+#include <algorithm>
 
 namespace lamella::mesh::detail {
 namespace {
@@ -106,11 +106,16 @@ bool cancel_flaps(EditMesh& mesh, VertexId v) {
                 const bool alike = direction(one, two.vertices[0], two.vertices[1]) > 0;
                 const RegionId back = alike ? two.back : two.front;
                 const RegionId front = alike ? two.front : two.back;
-                if (one.front == back) one.front = front;
-                else if (one.back == front) one.back = back;
-                else return false;
-                if (one.back == one.front) mesh.kill_face(faces[i]);
-                else mesh.set_face(faces[i], one);
+                if (one.front == back)
+                    one.front = front;
+                else if (one.back == front)
+                    one.back = back;
+                else
+                    return false;
+                if (one.back == one.front)
+                    mesh.kill_face(faces[i]);
+                else
+                    mesh.set_face(faces[i], one);
                 mesh.kill_face(faces[j]);
                 again = true;
             }

@@ -1,11 +1,11 @@
 #include "lamella/mesh/detail/motion.h"
 
+#include "lamella/core/parallel.h"
+#include "lamella/geometry/distance.h"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
-
-#include "lamella/core/parallel.h"
-#include "lamella/geometry/distance.h"
 
 namespace lamella::mesh::detail {
 namespace {
@@ -69,7 +69,8 @@ void PairLimits::vertices_against_face(FaceId f, FaceId g, std::vector<Limit>& l
         const double squared = geometry::squared_distance_to_triangle(mesh_.at(v), t[0], t[1], t[2]);
         if (together * together <= kTogether * kTogether * squared) continue;
         const double allowed = 0.5 * kTogether * std::sqrt(squared);
-        for (const VertexId w : {v, face.vertices[0], face.vertices[1], face.vertices[2]}) limits.push_back({w, allowed});
+        for (const VertexId w : {v, face.vertices[0], face.vertices[1], face.vertices[2]})
+            limits.push_back({w, allowed});
     }
 }
 
@@ -88,7 +89,8 @@ void PairLimits::of_pair(FaceId f, FaceId g, std::vector<Limit>& limits) const {
             const VertexId d = v[(j + 1) % 3];
             if (!((owned_[g].edges >> j) & 1U) || a == c || a == d || b == c || b == d) continue;
             const double together = most_f + std::max(length_[c], length_[d]);
-            const double squared = geometry::squared_distance_of_segments(mesh_.at(a), mesh_.at(b), mesh_.at(c), mesh_.at(d));
+            const double squared =
+                geometry::squared_distance_of_segments(mesh_.at(a), mesh_.at(b), mesh_.at(c), mesh_.at(d));
             if (together * together <= kTogether * kTogether * squared) continue;
             const double allowed = 0.5 * kTogether * std::sqrt(squared);
             for (const VertexId w : {a, b, c, d}) limits.push_back({w, allowed});

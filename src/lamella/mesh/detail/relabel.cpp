@@ -1,10 +1,10 @@
+#include "lamella/mesh/detail/sectors.h"
+#include "lamella/mesh/detail/workbench.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
-
-#include "lamella/mesh/detail/sectors.h"
-#include "lamella/mesh/detail/workbench.h"
 
 namespace lamella::mesh::detail {
 namespace {
@@ -36,7 +36,7 @@ struct Piece {
     RegionId region;
     double volume = 0.0;  // enclosed; negative for a cavity, or for the outside seen from within
     std::vector<FaceId> faces;
-    bool open = false;    // reaches a wire where the film ends
+    bool open = false;  // reaches a wire where the film ends
 };
 
 std::vector<Piece> pieces_of(const EditMesh& mesh) {
@@ -59,7 +59,8 @@ std::vector<Piece> pieces_of(const EditMesh& mesh) {
             for (std::size_t i = 0; i < around.size(); ++i) {
                 const FaceId g = around[i];
                 const FaceId next = around[i + 1 < around.size() ? i + 1 : 0];
-                sets.unite(side(g, direction(mesh.face(g), v, w) > 0), side(next, direction(mesh.face(next), v, w) < 0));
+                sets.unite(side(g, direction(mesh.face(g), v, w) > 0),
+                           side(next, direction(mesh.face(next), v, w) < 0));
             }
         }
     }
@@ -93,8 +94,8 @@ double winding(const EditMesh& mesh, const Piece& piece, const Vec3& point) {
         const Vec3 b = corners[1] - point;
         const Vec3 c = corners[2] - point;
         const double la = norm(a), lb = norm(b), lc = norm(c);
-        const double angle = 2.0 * std::atan2(dot(a, cross(b, c)),
-                                              la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+        const double angle =
+            2.0 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
         sum += mesh.face(f).back == piece.region ? angle : -angle;
     }
     return sum / (4.0 * std::numbers::pi);
@@ -104,8 +105,10 @@ void give_label(EditMesh& mesh, const Piece& piece, RegionId to) {
     mesh.begin();
     for (const FaceId f : piece.faces) {
         Face face = mesh.face(f);
-        if (face.back == piece.region) face.back = to;
-        else face.front = to;
+        if (face.back == piece.region)
+            face.back = to;
+        else
+            face.front = to;
         mesh.set_face(f, face);
     }
     mesh.commit();
@@ -147,7 +150,8 @@ void relabel(Workbench& bench) {
             (pieces[i].volume > 0.0 ? outer : cavities).push_back(&pieces[i]);
         }
         first = last;
-        std::stable_sort(outer.begin(), outer.end(), [](const Piece* a, const Piece* b) { return a->volume > b->volume; });
+        std::stable_sort(outer.begin(), outer.end(),
+                         [](const Piece* a, const Piece* b) { return a->volume > b->volume; });
         // A cavity goes with the smallest part around it; of an open region, with the open rest.
         std::vector<std::vector<const Piece*>> inside(outer.size());
         if (outer.size() > (closed ? 1U : 0U))
@@ -165,7 +169,8 @@ void relabel(Workbench& bench) {
             if (closed) mesh.regions()[region].target_volume -= volume;
             give_label(mesh, *outer[i], fresh);
             for (const Piece* cavity : inside[i]) give_label(mesh, *cavity, fresh);
-            bench.events.push_back({TopologyEvent::Kind::kSplit, mesh.corners(outer[i]->faces.front())[0], region, fresh});
+            bench.events.push_back(
+                {TopologyEvent::Kind::kSplit, mesh.corners(outer[i]->faces.front())[0], region, fresh});
         }
     }
     for (const RegionId r : mesh.regions().ids())
@@ -182,8 +187,10 @@ void absorb(Workbench& bench, RegionId region, RegionId into) {
         if (face.back != region && face.front != region) continue;
         if (face.back == region) face.back = into;
         if (face.front == region) face.front = into;
-        if (face.back == face.front) mesh.kill_face(f);
-        else mesh.set_face(f, face);
+        if (face.back == face.front)
+            mesh.kill_face(f);
+        else
+            mesh.set_face(f, face);
     }
     mesh.commit();
     Region& gone = mesh.regions()[region];

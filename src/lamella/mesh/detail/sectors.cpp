@@ -1,10 +1,10 @@
 #include "lamella/mesh/detail/sectors.h"
 
+#include "lamella/mesh/detail/face_shape.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-
-#include "lamella/mesh/detail/face_shape.h"
 
 namespace lamella::mesh::detail {
 namespace {

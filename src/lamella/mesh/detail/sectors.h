@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-
 #include "lamella/core/small_vector.h"
 #include "lamella/mesh/detail/edit_mesh.h"
+
+#include <cstdint>
+#include <optional>
 
 namespace lamella::mesh::detail {
 
@@ -35,8 +35,8 @@ struct Sectors {
         std::uint8_t back, front;
     };
     SmallVector<Place, 12> faces;
-    SmallVector<RegionId, 8> labels;   ///< of each sector
-    std::uint8_t components = 0;       ///< of faces joined by edges at v
+    SmallVector<RegionId, 8> labels;          ///< of each sector
+    std::uint8_t components = 0;              ///< of faces joined by edges at v
     SmallVector<std::uint32_t, 8> neighbors;  ///< per sector: bit set of the sectors that share a face with it
 
     std::size_t count() const { return labels.size(); }

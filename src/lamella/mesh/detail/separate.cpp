@@ -1,8 +1,8 @@
-#include <algorithm>
-
 #include "lamella/mesh/detail/face_shape.h"
 #include "lamella/mesh/detail/sectors.h"
 #include "lamella/mesh/detail/workbench.h"
+
+#include <algorithm>
 
 namespace lamella::mesh::detail {
 namespace {
@@ -57,7 +57,8 @@ std::optional<SmallVector<Gap, 12>> gaps(const EditMesh& mesh, VertexId v, const
 }
 
 /// Area of the faces at v and of the gaps when the copy is at v + s d and v at v - s d.
-double area_apart(const EditMesh& mesh, VertexId v, const Parting& parting, const SmallVector<Gap, 12>& gaps, double s) {
+double area_apart(
+    const EditMesh& mesh, VertexId v, const Parting& parting, const SmallVector<Gap, 12>& gaps, double s) {
     const Vec3 copy = mesh.at(v) + s * parting.direction;
     const Vec3 rest = mesh.at(v) - s * parting.direction;
     double sum = 0.0;
@@ -153,17 +154,16 @@ VertexId pull(EditMesh& mesh, VertexId v, const Parting& parting, const SmallVec
 
 }  // namespace
 
-std::optional<Separation> separate_vertex(const Workbench& bench,
-                                          VertexId v,
-                                          const StarVolumes& before,
-                                          const Vec3& origin,
-                                          double sharpest) {
+std::optional<Separation> separate_vertex(
+    const Workbench& bench, VertexId v, const StarVolumes& before, const Vec3& origin, double sharpest) {
     EditMesh& mesh = bench.mesh;
     const auto sectors = sectors_at(mesh, v);
     if (!sectors) return std::nullopt;
     std::vector<Parting> partings;
-    if (sectors->components > 1) pinches(mesh, v, *sectors, partings);
-    else crossings(bench, v, *sectors, partings);
+    if (sectors->components > 1)
+        pinches(mesh, v, *sectors, partings);
+    else
+        crossings(bench, v, *sectors, partings);
     std::stable_sort(partings.begin(), partings.end(),
                      [](const Parting& a, const Parting& b) { return a.gain > b.gain; });
     const Vec3 place = mesh.at(v);

@@ -1,7 +1,7 @@
-#include <algorithm>
-
 #include "lamella/mesh/detail/face_shape.h"
 #include "lamella/mesh/detail/workbench.h"
+
+#include <algorithm>
 
 namespace lamella::mesh::detail {
 namespace {

@@ -1,12 +1,12 @@
 #pragma once
 
+#include "lamella/mesh/detail/edit_mesh.h"
+#include "lamella/mesh/tracker.h"
+
 #include <functional>
 #include <initializer_list>
 #include <optional>
 #include <vector>
-
-#include "lamella/mesh/detail/edit_mesh.h"
-#include "lamella/mesh/tracker.h"
 
 namespace lamella::mesh::detail {
 
@@ -55,11 +55,8 @@ struct Separation {
     VertexId copy;
     TopologyEvent event;
 };
-std::optional<Separation> separate_vertex(const Workbench& bench,
-                                          VertexId v,
-                                          const StarVolumes& before,
-                                          const Vec3& origin,
-                                          double sharpest);
+std::optional<Separation> separate_vertex(
+    const Workbench& bench, VertexId v, const StarVolumes& before, const Vec3& origin, double sharpest);
 void separate_vertices(Workbench& bench);
 void merge_close_faces(Workbench& bench);
 /// Gives each piece of a region that came apart a number of its own, and lets regions too small to resolve go.

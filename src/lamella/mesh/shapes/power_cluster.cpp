@@ -1,15 +1,15 @@
 #include "lamella/mesh/shapes/power_cluster.h"
 
+#include "lamella/core/error.h"
+#include "lamella/core/random.h"
+#include "lamella/mesh/volume.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <unordered_map>
-
-#include <fmt/format.h>
-
-#include "lamella/core/error.h"
-#include "lamella/core/random.h"
-#include "lamella/mesh/volume.h"
 
 namespace lamella::mesh {
 namespace {
@@ -171,7 +171,8 @@ Cut Marching::face(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
 void Marching::triangle(const Cut& a, const Cut& b, const Cut& c, std::uint32_t behind, std::uint32_t before) {
     const Vec3 normal = cross(b.middle - a.middle, c.middle - a.middle);
     const bool forward = dot(normal, lattice_.at(before) - lattice_.at(behind)) > 0.0;
-    mesh_.add_face(a.vertex, forward ? b.vertex : c.vertex, forward ? c.vertex : b.vertex, label_[behind], label_[before]);
+    mesh_.add_face(a.vertex, forward ? b.vertex : c.vertex, forward ? c.vertex : b.vertex, label_[behind],
+                   label_[before]);
 }
 
 void Marching::two_labels(const std::array<std::uint32_t, 4>& c, std::size_t alone) {
@@ -221,15 +222,19 @@ void Marching::tetrahedron(std::array<std::uint32_t, 4> c) {
     std::stable_sort(c.begin(), c.end(), [&](std::uint32_t a, std::uint32_t b) { return label_[a] < label_[b]; });
     const bool same01 = label(0) == label(1), same12 = label(1) == label(2), same23 = label(2) == label(3);
     switch (same01 + same12 + same23) {
-        case 0: four_labels(c); break;
+        case 0:
+            four_labels(c);
+            break;
         case 1:
             if (same12) c = {c[1], c[2], c[0], c[3]};
             if (same23) c = {c[2], c[3], c[0], c[1]};
             three_labels(c);
             break;
         default:
-            if (same01 && same23) two_and_two(c);
-            else two_labels(c, same01 ? 3 : 0);
+            if (same01 && same23)
+                two_and_two(c);
+            else
+                two_labels(c, same01 ? 3 : 0);
     }
 }
 
@@ -260,7 +265,8 @@ FoamMesh Marching::run() {
 std::vector<Ball> pack_balls(const std::vector<double>& radii, std::uint64_t seed) {
     double volume = 0.0;
     for (const double r : radii) {
-        if (!(r > 0.0) || !std::isfinite(r)) throw InputError(fmt::format("a bubble's radius must be positive (got {})", r));
+        if (!(r > 0.0) || !std::isfinite(r))
+            throw InputError(fmt::format("a bubble's radius must be positive (got {})", r));
         volume += r * r * r;
     }
     const double heap = 1.5 * std::cbrt(volume);
@@ -294,7 +300,8 @@ FoamMesh power_cluster(const std::vector<Ball>& balls, double edge_length) {
     if (balls.empty()) throw InputError("a cluster needs at least one bubble");
     if (!(edge_length > 0.0) || !std::isfinite(edge_length))
         throw InputError(fmt::format("the edge length must be positive (got {})", edge_length));
-    constexpr double kSpacing = 1.5;  // of the lattice, in edges: its tetrahedra are cut into triangles about half as large
+    constexpr double kSpacing =
+        1.5;  // of the lattice, in edges: its tetrahedra are cut into triangles about half as large
     FoamMesh mesh = Marching(balls, kSpacing * edge_length).run();
     const auto volumes = region_volumes(mesh);
     for (const RegionId r : mesh.regions.ids()) {

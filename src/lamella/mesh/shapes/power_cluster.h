@@ -1,9 +1,9 @@
 #pragma once
 
+#include "lamella/mesh/foam_mesh.h"
+
 #include <cstdint>
 #include <vector>
-
-#include "lamella/mesh/foam_mesh.h"
 
 namespace lamella::mesh {
 
@@ -25,7 +25,8 @@ std::vector<Ball> pack_balls(const std::vector<double>& radii, std::uint64_t see
 ///
 /// @param edge_length  wanted length of an edge [m]
 /// @returns target volumes are those of the mesh
-/// @throws InputError  no balls, a bad size, a ball too small for the edge length, or more than 20 million lattice points
+/// @throws InputError  no balls, a bad size, a ball too small for the edge length, or more than 20 million lattice
+/// points
 FoamMesh power_cluster(const std::vector<Ball>& balls, double edge_length);
 
 }  // namespace lamella::mesh
