@@ -35,7 +35,7 @@ struct SolverInput {
     /// Reads a CSV file with a header line. @throws IoError, InputError
     std::function<NumberTable(const std::string& file)> read_table;
     Node options;             ///< the solver's own table; an empty table where the scene has none
-    std::shared_ptr<const film::Problem> films;  ///< of a film solver; empty for others
+    std::shared_ptr<const film::Problem> films = nullptr;  ///< of a film solver; empty for others
 };
 
 struct SolverEntry {

@@ -143,7 +143,10 @@ void EditMesh::rollback_to(std::size_t mark) {
         }
     }
     std::erase_if(touched_, [&](FaceId f) { return index(f) >= mesh_.faces.size(); });
-    if (mark == 0) touched_.clear();
+    if (mark > 0) return;
+    // The transaction goes on from its beginning: what it touches next counts as touched for the first time.
+    for (const FaceId f : touched_) stamp_[f] = 0;
+    touched_.clear();
 }
 
 void EditMesh::set_positions(const IdVector<VertexId, Vec3>& position) {
