@@ -63,7 +63,7 @@ struct CompactionMaps {
 /// any number of threads. The mesh between two calls obeys all rules of FoamMesh.
 class Tracker {
 public:
-    /// @throws InputError  the mesh breaks a rule (mesh/check.h), is periodic, or the edge length is not positive
+    /// The mesh must obey the rules of FoamMesh. @throws InputError  it is periodic, or the edge length is not positive
     Tracker(FoamMesh mesh, const TrackerOptions& options);
     ~Tracker();
     Tracker(Tracker&&) noexcept;
