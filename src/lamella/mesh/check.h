@@ -1,0 +1,30 @@
+#pragma once
+
+#include "lamella/mesh/foam_mesh.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace lamella::mesh {
+
+/// What of a FoamMesh is examined.
+struct CheckOptions {
+    bool intersections = true;       ///< exact test of every pair of faces whose boxes meet
+    std::size_t longest_list = 20;   ///< stop after so many faults
+};
+
+/// Everything that breaks a rule of FoamMesh, each a line that names the element: "face 12 has region 3 on both
+/// sides", "edge 4-9 does not close region 1", "faces 7 and 8 cut each other at (0.1, 0, 0.3)". Empty: the mesh is sound.
+///
+/// Examined: finite positions; ids in range; column sizes; faces with a vertex twice or without area; faces with the
+/// same vertices; region on both sides; the label cycle around every edge (open edges only between wire vertices);
+/// vertices that no face uses; regions that are kClosed but have no face, an open rim or no positive volume; faces of
+/// a region that is kGone; a periodic mesh with a singular cell; two faces that meet beyond what they share.
+/// Never throws on bad content; memory O(#F).
+std::vector<std::string> faults(const FoamMesh& mesh, const CheckOptions& options = {});
+
+/// @throws InputError  "NAME: FAULT" of the first fault, and how many more there are
+void require_sound(const FoamMesh& mesh, const std::string& name);
+
+}  // namespace lamella::mesh
