@@ -3,6 +3,7 @@
 find_package(TBB REQUIRED)             # core: parallel_for
 find_package(fmt REQUIRED)             # everywhere: messages
 find_package(spdlog REQUIRED)          # run: log.txt
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)  # linalg: sparse and dense matrices
 find_package(ZLIB REQUIRED)            # io: compressed frames
 find_package(HDF5 REQUIRED COMPONENTS C)  # io: checkpoints
 find_package(nlohmann_json REQUIRED)   # scene (importers), run, apps
@@ -12,7 +13,7 @@ if(LAMELLA_BUILD_APP)
 endif()
 
 set(LAMELLA_LIBRARY_VERSIONS "oneTBB ${TBB_VERSION}, fmt ${fmt_VERSION}, spdlog ${spdlog_VERSION}, \
-zlib ${ZLIB_VERSION_STRING}, HDF5 ${HDF5_VERSION}, nlohmann-json ${nlohmann_json_VERSION}, \
+Eigen ${Eigen3_VERSION}, zlib ${ZLIB_VERSION_STRING}, HDF5 ${HDF5_VERSION}, nlohmann-json ${nlohmann_json_VERSION}, \
 toml++ ${tomlplusplus_VERSION}")
 
 # Parts that are built only where their dependency is present, as `lamella version` lists them: "cuda, render".

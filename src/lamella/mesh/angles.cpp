@@ -1,6 +1,6 @@
 #include "lamella/mesh/angles.h"
 
-#include "lamella/mesh/detail/edge_faces.h"
+#include "lamella/mesh/edge_faces.h"
 #include "lamella/mesh/detail/film_direction.h"
 #include "lamella/mesh/detail/triangle.h"
 
@@ -13,10 +13,8 @@
 namespace lamella::mesh {
 namespace {
 
-using detail::EdgeFaces;
-using detail::EdgeUse;
 
-bool on_wire(const FoamMesh& mesh, const detail::EdgeKey& edge) {
+bool on_wire(const FoamMesh& mesh, const EdgeKey& edge) {
     return mesh.on_wire[edge.a] != 0 && mesh.on_wire[edge.b] != 0;
 }
 
@@ -51,7 +49,7 @@ std::array<double, 3> angles_around(const FoamMesh& mesh,
                                     std::span<const EdgeUse> uses,
                                     const std::array<RegionId, 3>& regions,
                                     const std::array<Vec3, 3>& film) {
-    const Vec3 along = detail::direction(detail::edge_vector(mesh, uses[0]));
+    const Vec3 along = detail::direction(edge_vector(mesh, uses[0]));
     std::array<double, 3> angle{};
     for (std::size_t k = 0; k < 3; ++k) {
         std::array<std::size_t, 2> side{};
@@ -75,11 +73,11 @@ struct LineStep {
 using TripleLines = std::map<VertexId, std::vector<LineStep>>;
 
 TripleLines triple_lines(const FoamMesh& mesh) {
-    const EdgeFaces edges = detail::edge_faces(mesh);
+    const EdgeFaces edges = edge_faces(mesh);
     TripleLines lines;
     for (std::size_t e = 0; e < edges.size(); ++e) {
         if (!triple_regions(mesh, edges, e)) continue;
-        const Vec3 vector = detail::edge_vector(mesh, edges.of(e).front());
+        const Vec3 vector = edge_vector(mesh, edges.of(e).front());
         lines[edges.edge[e].a].push_back({edges.edge[e].b, vector});
         lines[edges.edge[e].b].push_back({edges.edge[e].a, -vector});
     }
@@ -105,7 +103,7 @@ double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cros
 }  // namespace
 
 std::vector<TripleEdgeAngles> triple_edge_angles(const FoamMesh& mesh, AngleMethod method) {
-    const EdgeFaces edges = detail::edge_faces(mesh);
+    const EdgeFaces edges = edge_faces(mesh);
     const detail::VertexCorners corners = detail::vertex_corners(mesh);
     std::vector<TripleEdgeAngles> result;
     for (std::size_t e = 0; e < edges.size(); ++e) {
@@ -116,7 +114,7 @@ std::vector<TripleEdgeAngles> triple_edge_angles(const FoamMesh& mesh, AngleMeth
         for (std::size_t i = 0; i < 3; ++i)
             film[i] = method == AngleMethod::kFlat ? detail::flat_film_direction(mesh, uses[i])
                                                    : detail::quadratic_film_direction(mesh, corners, uses[i]);
-        result.push_back({edges.edge[e].a, edges.edge[e].b, norm(detail::edge_vector(mesh, uses[0])), *regions,
+        result.push_back({edges.edge[e].a, edges.edge[e].b, norm(edge_vector(mesh, uses[0])), *regions,
                           angles_around(mesh, uses, *regions, film)});
     }
     return result;

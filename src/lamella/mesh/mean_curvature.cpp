@@ -1,6 +1,6 @@
 #include "lamella/mesh/mean_curvature.h"
 
-#include "lamella/mesh/detail/edge_faces.h"
+#include "lamella/mesh/edge_faces.h"
 #include "lamella/mesh/detail/triangle.h"
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 namespace lamella::mesh {
 namespace {
 
-using detail::EdgeUse;
 
 bool touches(const FoamMesh& mesh, const EdgeUse& use, RegionId r) {
     return mesh.faces[use.face].back == r || mesh.faces[use.face].front == r;
@@ -23,7 +22,7 @@ Vec3 outward(const FoamMesh& mesh, const EdgeUse& use, RegionId r) {
 
 /// |e| theta for region r between two faces at an edge.
 double bend(const FoamMesh& mesh, const EdgeUse& first, const EdgeUse& second, RegionId r) {
-    Vec3 along = detail::edge_vector(mesh, first);  // from a to b; r must be seen on the left of the first face
+    Vec3 along = edge_vector(mesh, first);  // from a to b; r must be seen on the left of the first face
     if (first.forward != (mesh.faces[first.face].back == r)) along = -along;
     const double length = norm(along);
     const Vec3 n0 = outward(mesh, first, r);
@@ -45,7 +44,7 @@ std::vector<RegionId> regions_around(const FoamMesh& mesh, std::span<const EdgeU
 }  // namespace
 
 std::vector<EdgeCurvature> edge_mean_curvatures(const FoamMesh& mesh) {
-    const detail::EdgeFaces edges = detail::edge_faces(mesh);
+    const EdgeFaces edges = edge_faces(mesh);
     std::vector<EdgeCurvature> curvatures;
     curvatures.reserve(2 * edges.size());
     for (std::size_t e = 0; e < edges.size(); ++e)

@@ -1,6 +1,6 @@
 #include "lamella/mesh/quality.h"
 
-#include "lamella/mesh/detail/edge_faces.h"
+#include "lamella/mesh/edge_faces.h"
 #include "lamella/mesh/detail/triangle.h"
 
 #include <algorithm>
@@ -20,10 +20,10 @@ double min_angle(const FoamMesh& mesh) {
 }
 
 EdgeLengths edge_lengths(const FoamMesh& mesh) {
-    const detail::EdgeFaces edges = detail::edge_faces(mesh);
+    const EdgeFaces edges = edge_faces(mesh);
     if (edges.size() == 0) return {};
     std::vector<double> length(edges.size());
-    for (std::size_t e = 0; e < edges.size(); ++e) length[e] = norm(detail::edge_vector(mesh, edges.of(e).front()));
+    for (std::size_t e = 0; e < edges.size(); ++e) length[e] = norm(edge_vector(mesh, edges.of(e).front()));
 
     const auto count = static_cast<double>(length.size());
     EdgeLengths statistics{.count = length.size()};

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lamella/core/vec.h"
-#include "lamella/mesh/detail/edge_faces.h"
+#include "lamella/mesh/edge_faces.h"
 #include "lamella/mesh/detail/vertex_corners.h"
 #include "lamella/mesh/foam_mesh.h"
 

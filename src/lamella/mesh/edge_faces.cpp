@@ -1,9 +1,9 @@
-#include "lamella/mesh/detail/edge_faces.h"
+#include "lamella/mesh/edge_faces.h"
 
 #include <algorithm>
 #include <numeric>
 
-namespace lamella::mesh::detail {
+namespace lamella::mesh {
 namespace {
 
 struct KeyedUse {
@@ -63,4 +63,4 @@ EdgeFaces edge_faces(const FoamMesh& mesh) {
     return edges;
 }
 
-}  // namespace lamella::mesh::detail
+}  // namespace lamella::mesh

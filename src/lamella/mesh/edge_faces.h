@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace lamella::mesh::detail {
+namespace lamella::mesh {
 
 /// An edge, a < b. In a periodic foam two vertices may share several edges, which lead to different images of b.
 struct EdgeKey {
@@ -47,4 +47,4 @@ inline Vec3 edge_vector(const FoamMesh& mesh, const EdgeUse& use) {
     return use.forward ? along : -along;
 }
 
-}  // namespace lamella::mesh::detail
+}  // namespace lamella::mesh
