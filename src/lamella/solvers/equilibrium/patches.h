@@ -48,9 +48,4 @@ Patches quadratic_patches(const mesh::FoamMesh& mesh,
                           const mesh::EdgeFaces& edges,
                           const std::vector<FilmTension>& tension);
 
-/// Where a wire runs between two of its points a and b, when edges at them tell: on the circle through its neighbors
-/// (exact for rings and straight wires), the middle of the straight edge where the wire has a corner or an end.
-/// @returns  a place for every edge; for those that are not on a wire the middle
-std::vector<Vec3> edge_middles(const mesh::FoamMesh& mesh, const mesh::EdgeFaces& edges);
-
 }  // namespace lamella::equilibrium

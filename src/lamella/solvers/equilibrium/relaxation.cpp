@@ -1,0 +1,204 @@
+#include "lamella/solvers/equilibrium/relaxation.h"
+
+#include "lamella/core/error.h"
+#include "lamella/mesh/edge_faces.h"
+#include "lamella/mesh/quality.h"
+#include "lamella/mesh/smoothing.h"
+#include "lamella/mesh/subdivide.h"
+#include "lamella/mesh/volume.h"
+#include "lamella/solvers/equilibrium/curvature_flow.h"
+#include "lamella/solvers/equilibrium/newton.h"
+#include "lamella/solvers/equilibrium/rest_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lamella::equilibrium {
+namespace {
+
+using mesh::FoamMesh;
+using mesh::RegionKind;
+using mesh::VertexId;
+
+constexpr double kPi = 3.14159265358979323846;
+
+bool has_wires(const FoamMesh& mesh) {
+    return std::any_of(mesh.on_wire.begin(), mesh.on_wire.end(), [](std::uint8_t w) { return w != 0; });
+}
+
+/// Radius of the ball of the smallest target volume, or 0 without closed regions [m].
+double smallest_radius(const FoamMesh& mesh) {
+    double volume = 0.0;
+    for (const mesh::Region& r : mesh.regions)
+        if (r.kind == RegionKind::kClosed && (volume == 0.0 || r.target_volume < volume)) volume = r.target_volume;
+    return std::cbrt(0.75 * volume / kPi);
+}
+
+double film_area(const FoamMesh& mesh) {
+    double area = 0.0;
+    for (const mesh::FaceId f : mesh.faces.ids())
+        area += 0.5 * norm(cross(mesh.corner(f, 1) - mesh.corner(f, 0), mesh.corner(f, 2) - mesh.corner(f, 0)));
+    return area;
+}
+
+/// How often the wanted edge length is doubled for the first mesh.
+int coarse_levels(const FoamMesh& mesh, const RelaxationOptions& options) {
+    if (has_wires(mesh)) return 0;  // the rims keep their vertices
+    constexpr double kFacePerSquareEdge = 0.4330127018922193;  // sqrt(3) / 4
+    constexpr double kLongestEdge = 0.4;                       // of the smallest bubble's radius
+    const double faces = film_area(mesh) / (kFacePerSquareEdge * options.edge_length * options.edge_length);
+    int levels = 0;
+    for (double h = options.edge_length, f = faces;
+         f > options.coarse_faces && 2.0 * h < kLongestEdge * smallest_radius(mesh); h *= 2.0, f /= 4.0)
+        ++levels;
+    return levels;
+}
+
+RestSystem flat_system(const FoamMesh& mesh, const RelaxationOptions& options) {
+    return RestSystem(mesh, mesh::edge_faces(mesh), flat_patches(mesh, options.tension));
+}
+
+}  // namespace
+
+Relaxation::Relaxation(FoamMesh mesh, const RelaxationOptions& options) : options_(options) {
+    const double coarse = options.edge_length * std::ldexp(1.0, coarse_levels(mesh, options));
+    make_tracker(std::move(mesh), coarse);
+}
+
+void Relaxation::make_tracker(FoamMesh mesh, double edge_length) {
+    edge_length_ = edge_length;
+    mesh::TrackerOptions options;
+    options.edge_length = edge_length;
+    options.merging = options_.merging;
+    options.separating = options_.separating;
+    tracker_ = std::make_unique<mesh::Tracker>(std::move(mesh), options);
+}
+
+void Relaxation::restart(FoamMesh mesh, double edge_length) {
+    make_tracker(std::move(mesh), edge_length);
+    stage_ = Stage::kFlow;
+}
+
+void Relaxation::advance() {
+    if (at_rest()) return;
+    ++steps_;
+    measure();
+    if (residual_ > options_.flow_until || failed_settles_ > 0) {
+        stage_ = Stage::kFlow;
+        failed_settles_ = std::max(0, failed_settles_ - 1);
+        flow();
+    } else if (residual_ > options_.freeze_at) {
+        stage_ = Stage::kNewton;
+        newton();
+    } else {
+        settle();
+    }
+    for (const mesh::TopologyEvent& event : tracker_->take_events()) events_.push_back(event);
+}
+
+void Relaxation::measure() {
+    const RestSystem system = flat_system(mesh(), options_);
+    const Balance balance = system.balance();
+    const std::vector<double> best = system.best_pressures(balance);
+    residual_ = RestSystem::residual(balance, best);
+    for (std::size_t r = 0; r < balance.missing.size(); ++r)
+        residual_ = std::max(residual_, std::abs(balance.missing[r]) / system.target(r));
+}
+
+/// The tracker goes as far as is safe in one move; the rest follows in a few more.
+void Relaxation::push(const IdVector<VertexId, Vec3>& displacement) {
+    double longest = 0.0;
+    for (const Vec3& d : displacement) longest = std::max(longest, norm(d));
+    const double reach = 0.9 * tracker_->options().longest_step * edge_length_;
+    constexpr double kMostMoves = 4.0;
+    const double moves = std::clamp(std::ceil(longest / reach), 1.0, kMostMoves);
+    const double share = std::min(1.0 / moves, longest > 0.0 ? reach / longest : 1.0);
+    IdVector<VertexId, Vec3> part = displacement;
+    for (Vec3& d : part) d *= share;
+    for (int k = 0; k < static_cast<int>(moves); ++k) tracker_->move(part);
+}
+
+void Relaxation::tidy() {
+    tracker_->move(mesh::tangential_smoothing(mesh()));
+    tracker_->remesh();
+}
+
+double Relaxation::flow_time() const {
+    const double radius = smallest_radius(mesh());
+    if (radius > 0.0) return options_.flow_step * radius * radius;
+    return options_.flow_step * film_area(mesh()) / kPi;
+}
+
+void Relaxation::flow() {
+    push(curvature_flow_step(mesh(), options_.tension, flow_time()));
+    tidy();
+}
+
+void Relaxation::newton() {
+    RestSystem system = flat_system(mesh(), options_);
+    Newton newton(system, Goal::kMinimum);
+    newton.step();
+    IdVector<VertexId, Vec3> displacement(mesh().position.size());
+    for (const VertexId v : displacement.ids())
+        displacement[v] = system.patches().position[index(v)] - mesh().position[v];
+    push(displacement);
+    tidy();
+}
+
+void Relaxation::settle() {
+    RestSystem system = flat_system(mesh(), options_);
+    Newton newton(system, Goal::kMinimum);
+    constexpr int kMostSteps = 15;
+    const bool converged = newton.solve(options_.tolerance, kMostSteps);
+    newton_steps_ = newton.steps();
+    IdVector<VertexId, Vec3> displacement(mesh().position.size());
+    for (const VertexId v : displacement.ids())
+        displacement[v] = system.patches().position[index(v)] - mesh().position[v];
+    const bool moved_all = tracker_->move(displacement).limited == 0;
+    residual_ = newton.last().residual;
+    pressure_.assign(mesh().regions.size(), 0.0);
+    for (std::size_t c = 0; c < newton.pressure().size(); ++c)
+        pressure_[index(system.constrained()[c])] = newton.pressure()[c];
+    if (!converged || !moved_all) {
+        failed_settles_ = converged ? 0 : 3;
+        tidy();
+        return;
+    }
+    if (tracker_changes_topology()) return;
+    if (edge_length_ > 1.5 * options_.edge_length) {
+        refine();
+        return;
+    }
+    stage_ = Stage::kRest;
+}
+
+/// Whether the tracker sees something to merge or to part; if not, the mesh stays as it was.
+bool Relaxation::tracker_changes_topology() {
+    FoamMesh rested = mesh();
+    tracker_->remesh();
+    const std::vector<mesh::TopologyEvent> fresh = tracker_->take_events();
+    const bool changed = !fresh.empty();
+    events_.insert(events_.end(), fresh.begin(), fresh.end());
+    if (!changed) make_tracker(std::move(rested), edge_length_);
+    return changed;
+}
+
+void Relaxation::refine() {
+    const mesh::EdgeFaces edges = mesh::edge_faces(mesh());
+    make_tracker(mesh::subdivide(mesh(), edges, mesh::edge_middles(mesh(), edges)), 0.5 * edge_length_);
+}
+
+std::vector<mesh::TopologyEvent> Relaxation::take_events() { return std::exchange(events_, {}); }
+
+void Relaxation::pop(mesh::RegionId region, mesh::RegionId into) {
+    tracker_->pop(region, into);
+    stage_ = Stage::kFlow;
+}
+
+void Relaxation::set_target_volume(mesh::RegionId region, double volume) {
+    tracker_->set_target_volume(region, volume);
+    stage_ = Stage::kFlow;
+}
+
+}  // namespace lamella::equilibrium

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "lamella/mesh/foam_mesh.h"
+#include "lamella/mesh/tracker.h"
+#include "lamella/solvers/equilibrium/patches.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace lamella::equilibrium {
+
+struct RelaxationOptions {
+    double edge_length = 0.0;            ///< of the mesh at rest [m]
+    std::vector<FilmTension> tension;
+    double flow_step = 0.1;              ///< tau of the flow, in squared radii of the smallest bubble
+    double flow_until = 0.05;            ///< residual from which on Newton's method takes over
+    double freeze_at = 2e-3;             ///< residual from which on the mesh stays as it is
+    double tolerance = 1e-8;             ///< residual at rest
+    int coarse_faces = 2000;             ///< the films first come to rest on about so many faces
+    bool separating = true;              ///< false: cones and crosses stay
+    bool merging = true;
+};
+
+/// Brings films to rest: least area at the regions' target volumes, through changes of topology.
+///
+/// Far from rest the films follow an implicit mean curvature flow, nearer Newton's method, both through the tracker, which
+/// keeps the mesh even and lets films merge and part; at the end the mesh is frozen and Newton's method converges. First on
+/// a coarse mesh, then on ever finer ones. docs/equilibrium.md
+class Relaxation {
+public:
+    /// What stands between the present state and rest.
+    enum class Stage { kFlow, kNewton, kRest };
+
+    /// @throws InputError  the mesh is periodic and not near rest, or breaks a rule of FoamMesh
+    Relaxation(mesh::FoamMesh mesh, const RelaxationOptions& options);
+
+    /// One step. Nothing happens at rest.
+    void advance();
+    bool at_rest() const { return stage_ == Stage::kRest; }
+    Stage stage() const { return stage_; }
+
+    const mesh::FoamMesh& mesh() const { return tracker_->mesh(); }
+    double edge_length() const { return edge_length_; }     ///< of the present mesh [m]
+    double residual() const { return residual_; }           ///< before the last step
+    const std::vector<double>& pressure() const { return pressure_; }  ///< per region, over a film tension of 1 [1/m]
+    int steps() const { return steps_; }
+    int newton_steps() const { return newton_steps_; }      ///< on the final mesh
+    std::vector<mesh::TopologyEvent> take_events();
+
+    /// Changes of the regions; the films leave their rest.
+    void pop(mesh::RegionId region, mesh::RegionId into);
+    void set_target_volume(mesh::RegionId region, double volume);
+    /// Puts another mesh in the place of the present one (resuming, annealing).
+    void restart(mesh::FoamMesh mesh, double edge_length);
+
+private:
+    void make_tracker(mesh::FoamMesh mesh, double edge_length);
+    void push(const IdVector<mesh::VertexId, Vec3>& displacement);
+    void tidy();
+    void flow();
+    void newton();
+    void settle();
+    bool tracker_changes_topology();
+    void refine();
+    double flow_time() const;
+    void measure();
+
+    RelaxationOptions options_;
+    double edge_length_ = 0.0;
+    std::unique_ptr<mesh::Tracker> tracker_;
+    Stage stage_ = Stage::kFlow;
+    double residual_ = 0.0;
+    std::vector<double> pressure_;
+    int steps_ = 0;
+    int newton_steps_ = 0;
+    int failed_settles_ = 0;
+    std::vector<mesh::TopologyEvent> events_;
+};
+
+}  // namespace lamella::equilibrium
