@@ -21,6 +21,8 @@ using mesh::FoamMesh;
 using mesh::RegionKind;
 using mesh::VertexId;
 
+/// Newton's steps through the tracker fall back when soft modes are left: then the mesh is frozen early.
+constexpr int kMostSlowSteps = 5;
 constexpr double kPi = 3.14159265358979323846;
 
 bool has_wires(const FoamMesh& mesh) {
@@ -88,11 +90,15 @@ void Relaxation::advance() {
         stage_ = Stage::kFlow;
         failed_settles_ = std::max(0, failed_settles_ - 1);
         flow();
-    } else if (residual_ > options_.freeze_at) {
+    } else if (residual_ > options_.freeze_at && slow_steps_ < kMostSlowSteps) {
         stage_ = Stage::kNewton;
+        slow_steps_ = residual_ > 0.5 * best_residual_ ? slow_steps_ + 1 : 0;
+        best_residual_ = std::min(residual_, best_residual_);
         newton();
     } else {
         settle();
+        slow_steps_ = 0;
+        best_residual_ = 1.0;
     }
     for (const mesh::TopologyEvent& event : tracker_->take_events()) events_.push_back(event);
 }
@@ -122,6 +128,14 @@ void Relaxation::push(const IdVector<VertexId, Vec3>& displacement) {
 void Relaxation::tidy() {
     tracker_->move(mesh::tangential_smoothing(mesh()));
     tracker_->remesh();
+    RestSystem system = flat_system(mesh(), options_);
+    tracker_->move(displacement_to(system.project_volumes(system.patches().position, 2)));
+}
+
+IdVector<VertexId, Vec3> Relaxation::displacement_to(const std::vector<Vec3>& position) const {
+    IdVector<VertexId, Vec3> displacement(position);
+    for (const VertexId v : displacement.ids()) displacement[v] -= mesh().position[v];
+    return displacement;
 }
 
 double Relaxation::flow_time() const {
@@ -139,10 +153,7 @@ void Relaxation::newton() {
     RestSystem system = flat_system(mesh(), options_);
     Newton newton(system, Goal::kMinimum);
     newton.step();
-    IdVector<VertexId, Vec3> displacement(mesh().position.size());
-    for (const VertexId v : displacement.ids())
-        displacement[v] = system.patches().position[index(v)] - mesh().position[v];
-    push(displacement);
+    push(displacement_to(system.patches().position));
     tidy();
 }
 
@@ -152,15 +163,16 @@ void Relaxation::settle() {
     constexpr int kMostSteps = 15;
     const bool converged = newton.solve(options_.tolerance, kMostSteps);
     newton_steps_ = newton.steps();
-    IdVector<VertexId, Vec3> displacement(mesh().position.size());
-    for (const VertexId v : displacement.ids())
-        displacement[v] = system.patches().position[index(v)] - mesh().position[v];
-    const bool moved_all = tracker_->move(displacement).limited == 0;
+    bool moved_all = false;
+    constexpr int kMostMoves = 10;
+    for (int k = 0; k < kMostMoves && !moved_all; ++k)
+        moved_all = tracker_->move(displacement_to(system.patches().position)).limited == 0;
     residual_ = newton.last().residual;
     pressure_.assign(mesh().regions.size(), 0.0);
     for (std::size_t c = 0; c < newton.pressure().size(); ++c)
         pressure_[index(system.constrained()[c])] = newton.pressure()[c];
-    if (!converged || !moved_all) {
+    constexpr double kSliver = 5.0 * kPi / 180.0;  // on sharper faces quadratic patches fail
+    if (!converged || !moved_all || mesh::min_angle(mesh()) < kSliver) {
         failed_settles_ = converged ? 0 : 3;
         tidy();
         return;

@@ -58,6 +58,7 @@ private:
     void make_tracker(mesh::FoamMesh mesh, double edge_length);
     void push(const IdVector<mesh::VertexId, Vec3>& displacement);
     void tidy();
+    IdVector<mesh::VertexId, Vec3> displacement_to(const std::vector<Vec3>& position) const;
     void flow();
     void newton();
     void settle();
@@ -75,6 +76,8 @@ private:
     int steps_ = 0;
     int newton_steps_ = 0;
     int failed_settles_ = 0;
+    int slow_steps_ = 0;
+    double best_residual_ = 1.0;
     std::vector<mesh::TopologyEvent> events_;
 };
 
