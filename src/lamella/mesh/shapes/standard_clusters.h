@@ -23,8 +23,8 @@ DoubleBubble double_bubble_of_radii(double radius1, double radius2);
 
 /// A mesh of it: vertices on the exact caps, the triple line in the plane x = 0, bubble 1 at x < 0. Regions 1 and 2.
 FoamMesh double_bubble(const DoubleBubble& shape, double edge_length);
-/// Three (four) bubbles of equal volume at rest, in exact spherical and flat pieces, symmetric about the z axis (as a
-/// tetrahedron). Regions 1 to 3 (4). @throws InputError  a size that is not positive
+/// Three (four) bubbles of equal volume, the power diagram of balls at the corners of a triangle (tetrahedron): close to
+/// their resting shape, and with its symmetry. Regions 1 to 3 (4). @throws InputError  a size that is not positive
 FoamMesh triple_bubble(double volume, double edge_length);
 FoamMesh quadruple_bubble(double volume, double edge_length);
 
