@@ -27,6 +27,8 @@ enum class RandomStream : std::uint32_t {
     kFilmRupture = 4,     ///< which film bursts, and when
     kClusterPosition = 5, ///< bubbles of a cluster before they are packed
     kMeshJitter = 6,      ///< vertices off the planes of a grid
+    kAnneal = 7,          ///< volumes while a cluster looks for a better shape
+    kFoamSizes = 8,       ///< volumes of a cluster's bubbles
 };
 
 /// 128 random bits.

@@ -18,13 +18,22 @@ struct Material {
     double film_tension() const { return 2.0 * surface_tension; }  ///< [N/m]
 };
 
+/// How tense the films between two regions are, relative to the material's film: [[tension]] of a scene.
+struct FilmTension {
+    mesh::RegionId a, b;
+    double factor = 1.0;
+};
+
+/// The region that shares most film with the one in question.
+inline constexpr mesh::RegionId kLargestNeighbor{0xffffffffU};
+
 /// A change of the regions at a time: [[event]] of a scene.
 struct Event {
     enum class Kind { kPop, kInflate };
     Kind kind = Kind::kPop;
     double time = 0.0;                          ///< [s]
     mesh::RegionId region = mesh::kOutside;     ///< which bubble
-    mesh::RegionId into = mesh::kOutside;       ///< pop: the region it joins
+    mesh::RegionId into = kLargestNeighbor;     ///< pop: the region it joins
     double volume = 0.0;                        ///< inflate: its new volume [m^3]
 };
 
@@ -32,9 +41,10 @@ struct Event {
 /// [foam], [resolution], [[event]].
 struct Problem {
     Material material;
-    mesh::FoamMesh mesh;       ///< the films at the start
-    double edge_length = 0.0;  ///< wanted length of an edge [m]
-    std::vector<Event> events; ///< in order of time
+    mesh::FoamMesh mesh;        ///< the films at the start
+    double edge_length = 0.0;   ///< wanted length of an edge [m]
+    std::vector<FilmTension> tensions;
+    std::vector<Event> events;  ///< in order of time
 };
 
 }  // namespace lamella::film

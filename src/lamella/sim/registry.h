@@ -42,6 +42,7 @@ struct SolverEntry {
     std::string name;
     std::string summary;
     std::string time_unit = "s";
+    bool films = false;  ///< starts from the film tables of a scene (SolverInput::films)
     std::function<std::unique_ptr<Solver>(const SolverInput&)> create;  ///< checks the options, does no work
     std::function<std::vector<OptionInfo>()> describe;
     std::function<Node(const Node& options)> resolve;  ///< the options with every default filled in

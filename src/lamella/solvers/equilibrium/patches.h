@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lamella/core/vec.h"
+#include "lamella/film/problem.h"
 #include "lamella/mesh/edge_faces.h"
 #include "lamella/mesh/foam_mesh.h"
 
@@ -34,11 +35,7 @@ struct Patches {
     }
 };
 
-/// How tense films are between pairs of regions, relative to the material's film; 1 where nothing is said.
-struct FilmTension {
-    mesh::RegionId a, b;
-    double factor;
-};
+using film::FilmTension;
 
 /// The faces of a mesh as flat patches.
 Patches flat_patches(const mesh::FoamMesh& mesh, const std::vector<FilmTension>& tension);

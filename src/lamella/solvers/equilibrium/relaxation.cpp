@@ -6,9 +6,12 @@
 #include "lamella/mesh/smoothing.h"
 #include "lamella/mesh/subdivide.h"
 #include "lamella/mesh/volume.h"
+#include "lamella/sim/mesh_archive.h"
 #include "lamella/solvers/equilibrium/curvature_flow.h"
 #include "lamella/solvers/equilibrium/newton.h"
 #include "lamella/solvers/equilibrium/rest_system.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +49,7 @@ double film_area(const FoamMesh& mesh) {
 
 /// How often the wanted edge length is doubled for the first mesh.
 int coarse_levels(const FoamMesh& mesh, const RelaxationOptions& options) {
+    if (mesh.periodic() || options.goal == Goal::kStationary) return 0;
     if (has_wires(mesh)) return 0;  // the rims keep their vertices
     constexpr double kFacePerSquareEdge = 0.4330127018922193;  // sqrt(3) / 4
     constexpr double kLongestEdge = 0.4;                       // of the smallest bubble's radius
@@ -65,11 +69,15 @@ RestSystem flat_system(const FoamMesh& mesh, const RelaxationOptions& options) {
 
 Relaxation::Relaxation(FoamMesh mesh, const RelaxationOptions& options) : options_(options) {
     const double coarse = options.edge_length * std::ldexp(1.0, coarse_levels(mesh, options));
-    make_tracker(std::move(mesh), coarse);
+    take(std::move(mesh), coarse);
 }
 
-void Relaxation::make_tracker(FoamMesh mesh, double edge_length) {
+void Relaxation::take(FoamMesh mesh, double edge_length) {
     edge_length_ = edge_length;
+    if (mesh.periodic() || options_.goal == Goal::kStationary) {
+        frozen_ = std::move(mesh);
+        return;
+    }
     mesh::TrackerOptions options;
     options.edge_length = edge_length;
     options.merging = options_.merging;
@@ -78,13 +86,14 @@ void Relaxation::make_tracker(FoamMesh mesh, double edge_length) {
 }
 
 void Relaxation::restart(FoamMesh mesh, double edge_length) {
-    make_tracker(std::move(mesh), edge_length);
+    take(std::move(mesh), edge_length);
     stage_ = Stage::kFlow;
 }
 
 void Relaxation::advance() {
     if (at_rest()) return;
     ++steps_;
+    if (!tracker_) return settle_frozen();
     measure();
     if (residual_ > options_.flow_until || failed_settles_ > 0) {
         stage_ = Stage::kFlow;
@@ -162,15 +171,11 @@ void Relaxation::settle() {
     Newton newton(system, Goal::kMinimum);
     constexpr int kMostSteps = 15;
     const bool converged = newton.solve(options_.tolerance, kMostSteps);
-    newton_steps_ = newton.steps();
     bool moved_all = false;
     constexpr int kMostMoves = 10;
     for (int k = 0; k < kMostMoves && !moved_all; ++k)
         moved_all = tracker_->move(displacement_to(system.patches().position)).limited == 0;
-    residual_ = newton.last().residual;
-    pressure_.assign(mesh().regions.size(), 0.0);
-    for (std::size_t c = 0; c < newton.pressure().size(); ++c)
-        pressure_[index(system.constrained()[c])] = newton.pressure()[c];
+    keep_pressures(system, newton);
     constexpr double kSliver = 5.0 * kPi / 180.0;  // on sharper faces quadratic patches fail
     if (!converged || !moved_all || mesh::min_angle(mesh()) < kSliver) {
         failed_settles_ = converged ? 0 : 3;
@@ -185,6 +190,25 @@ void Relaxation::settle() {
     stage_ = Stage::kRest;
 }
 
+/// Ten of Newton's steps on the mesh as it is.
+void Relaxation::settle_frozen() {
+    stage_ = Stage::kNewton;
+    RestSystem system = flat_system(mesh(), options_);
+    Newton newton(system, options_.goal);
+    constexpr int kMostSteps = 10;
+    const bool converged = newton.solve(options_.tolerance, kMostSteps);
+    frozen_.position.values() = system.patches().position;
+    keep_pressures(system, newton);
+    if (converged) stage_ = Stage::kRest;
+}
+
+void Relaxation::keep_pressures(const RestSystem& system, const Newton& newton) {
+    residual_ = newton.last().residual;
+    pressure_.assign(mesh().regions.size(), 0.0);
+    for (std::size_t c = 0; c < newton.pressure().size(); ++c)
+        pressure_[index(system.constrained()[c])] = newton.pressure()[c];
+}
+
 /// Whether the tracker sees something to merge or to part; if not, the mesh stays as it was.
 bool Relaxation::tracker_changes_topology() {
     FoamMesh rested = mesh();
@@ -192,25 +216,52 @@ bool Relaxation::tracker_changes_topology() {
     const std::vector<mesh::TopologyEvent> fresh = tracker_->take_events();
     const bool changed = !fresh.empty();
     events_.insert(events_.end(), fresh.begin(), fresh.end());
-    if (!changed) make_tracker(std::move(rested), edge_length_);
+    if (!changed) take(std::move(rested), edge_length_);
     return changed;
 }
 
 void Relaxation::refine() {
     const mesh::EdgeFaces edges = mesh::edge_faces(mesh());
-    make_tracker(mesh::subdivide(mesh(), edges, mesh::edge_middles(mesh(), edges)), 0.5 * edge_length_);
+    take(mesh::subdivide(mesh(), edges, mesh::edge_middles(mesh(), edges)), 0.5 * edge_length_);
 }
 
 std::vector<mesh::TopologyEvent> Relaxation::take_events() { return std::exchange(events_, {}); }
 
 void Relaxation::pop(mesh::RegionId region, mesh::RegionId into) {
+    if (!tracker_) throw InputError("films whose mesh stays as it is (periodic, or stationary) cannot burst");
     tracker_->pop(region, into);
+    for (const mesh::TopologyEvent& event : tracker_->take_events()) events_.push_back(event);
     stage_ = Stage::kFlow;
 }
 
 void Relaxation::set_target_volume(mesh::RegionId region, double volume) {
-    tracker_->set_target_volume(region, volume);
+    if (tracker_) tracker_->set_target_volume(region, volume);
+    else frozen_.regions[region].target_volume = volume;
     stage_ = Stage::kFlow;
+}
+
+Relaxation::Relaxation(sim::StateReader& in, const RelaxationOptions& options) : options_(options) {
+    take(sim::load_mesh(in, "mesh"), in.read_double("relaxation/edge_length"));
+    const std::int64_t stage = in.read_integer("relaxation/stage");
+    if (stage < 0 || stage > static_cast<std::int64_t>(Stage::kRest))
+        throw InputError(fmt::format("relaxation/stage = {} is no stage", stage));
+    stage_ = static_cast<Stage>(stage);
+    residual_ = in.read_double("relaxation/residual");
+    best_residual_ = in.read_double("relaxation/best_residual");
+    steps_ = static_cast<int>(in.read_integer("relaxation/steps"));
+    failed_settles_ = static_cast<int>(in.read_integer("relaxation/failed_settles"));
+    slow_steps_ = static_cast<int>(in.read_integer("relaxation/slow_steps"));
+}
+
+void Relaxation::save(sim::StateWriter& out) const {
+    sim::save_mesh(out, "mesh", mesh());
+    out.write_value("relaxation/edge_length", edge_length_);
+    out.write_value("relaxation/stage", static_cast<std::int64_t>(stage_));
+    out.write_value("relaxation/residual", residual_);
+    out.write_value("relaxation/best_residual", best_residual_);
+    out.write_value("relaxation/steps", static_cast<std::int64_t>(steps_));
+    out.write_value("relaxation/failed_settles", static_cast<std::int64_t>(failed_settles_));
+    out.write_value("relaxation/slow_steps", static_cast<std::int64_t>(slow_steps_));
 }
 
 }  // namespace lamella::equilibrium

@@ -2,6 +2,8 @@
 
 #include "lamella/mesh/foam_mesh.h"
 #include "lamella/mesh/tracker.h"
+#include "lamella/sim/archive.h"
+#include "lamella/solvers/equilibrium/newton.h"
 #include "lamella/solvers/equilibrium/patches.h"
 
 #include <memory>
@@ -13,6 +15,7 @@ namespace lamella::equilibrium {
 struct RelaxationOptions {
     double edge_length = 0.0;            ///< of the mesh at rest [m]
     std::vector<FilmTension> tension;
+    Goal goal = Goal::kMinimum;          ///< kStationary: Newton's method alone, on the mesh as it is
     double flow_step = 0.1;              ///< tau of the flow, in squared radii of the smallest bubble
     double flow_until = 0.05;            ///< residual from which on Newton's method takes over
     double freeze_at = 2e-3;             ///< residual from which on the mesh stays as it is
@@ -32,20 +35,22 @@ public:
     /// What stands between the present state and rest.
     enum class Stage { kFlow, kNewton, kRest };
 
-    /// @throws InputError  the mesh is periodic and not near rest, or breaks a rule of FoamMesh
+    /// A foam in a periodic box keeps its triangles: only Newton's method is at work.
     Relaxation(mesh::FoamMesh mesh, const RelaxationOptions& options);
+    /// As it was saved.
+    Relaxation(sim::StateReader& in, const RelaxationOptions& options);
+    void save(sim::StateWriter& out) const;
 
     /// One step. Nothing happens at rest.
     void advance();
     bool at_rest() const { return stage_ == Stage::kRest; }
     Stage stage() const { return stage_; }
 
-    const mesh::FoamMesh& mesh() const { return tracker_->mesh(); }
+    const mesh::FoamMesh& mesh() const { return tracker_ ? tracker_->mesh() : frozen_; }
     double edge_length() const { return edge_length_; }     ///< of the present mesh [m]
     double residual() const { return residual_; }           ///< before the last step
     const std::vector<double>& pressure() const { return pressure_; }  ///< per region, over a film tension of 1 [1/m]
     int steps() const { return steps_; }
-    int newton_steps() const { return newton_steps_; }      ///< on the final mesh
     std::vector<mesh::TopologyEvent> take_events();
 
     /// Changes of the regions; the films leave their rest.
@@ -55,13 +60,15 @@ public:
     void restart(mesh::FoamMesh mesh, double edge_length);
 
 private:
-    void make_tracker(mesh::FoamMesh mesh, double edge_length);
+    void take(mesh::FoamMesh mesh, double edge_length);
     void push(const IdVector<mesh::VertexId, Vec3>& displacement);
     void tidy();
     IdVector<mesh::VertexId, Vec3> displacement_to(const std::vector<Vec3>& position) const;
     void flow();
     void newton();
     void settle();
+    void settle_frozen();
+    void keep_pressures(const RestSystem& system, const Newton& newton);
     bool tracker_changes_topology();
     void refine();
     double flow_time() const;
@@ -69,12 +76,12 @@ private:
 
     RelaxationOptions options_;
     double edge_length_ = 0.0;
-    std::unique_ptr<mesh::Tracker> tracker_;
+    std::unique_ptr<mesh::Tracker> tracker_;  ///< none where the mesh stays as it is
+    mesh::FoamMesh frozen_;                   ///< then this is it
     Stage stage_ = Stage::kFlow;
     double residual_ = 0.0;
     std::vector<double> pressure_;
     int steps_ = 0;
-    int newton_steps_ = 0;
     int failed_settles_ = 0;
     int slow_steps_ = 0;
     double best_residual_ = 1.0;

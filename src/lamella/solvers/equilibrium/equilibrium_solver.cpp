@@ -1,0 +1,207 @@
+#include "lamella/solvers/equilibrium/equilibrium_solver.h"
+
+#include "lamella/core/error.h"
+#include "lamella/core/random.h"
+#include "lamella/mesh/area.h"
+#include "lamella/sim/mesh_archive.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace lamella::equilibrium {
+namespace {
+
+using mesh::RegionId;
+using mesh::RegionKind;
+
+/// The region that shares most film with `region`.
+RegionId largest_neighbor(const mesh::FoamMesh& mesh, RegionId region) {
+    std::map<RegionId, double> shared;
+    for (const mesh::FaceId f : mesh.faces.ids()) {
+        const auto& [vertices, back, front] = mesh.faces[f];
+        if (back != region && front != region) continue;
+        shared[back == region ? front : back] +=
+            norm(cross(mesh.corner(f, 1) - mesh.corner(f, 0), mesh.corner(f, 2) - mesh.corner(f, 0)));
+    }
+    const auto most = std::max_element(shared.begin(), shared.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most == shared.end()) throw InputError(fmt::format("there is no bubble {} that could burst", index(region)));
+    return most->first;
+}
+
+}  // namespace
+
+EquilibriumSolver::EquilibriumSolver(const Options& options, const sim::SolverInput& input)
+    : options_(options), input_(input) {
+    if (!input_.films) throw InputError("the scene has no films; add a [[bubble]], [[film]] or [foam]");
+    if (options_.anneal_rounds > 0 && input_.films->mesh.periodic())
+        throw InputError("equilibrium.anneal_rounds: a foam in a periodic box cannot change its triangles");
+}
+
+RelaxationOptions EquilibriumSolver::relaxation_options() const {
+    RelaxationOptions options;
+    options.edge_length = input_.films->edge_length;
+    options.tension = input_.films->tensions;
+    options.goal = options_.goal;
+    options.flow_step = options_.flow_step;
+    options.tolerance = options_.tolerance;
+    options.coarse_faces = options_.coarse_faces;
+    options.merging = options_.merging;
+    options.separating = options_.separating;
+    return options;
+}
+
+void EquilibriumSolver::start(const sim::StartContext&) {
+    relaxation_ = std::make_unique<Relaxation>(input_.films->mesh, relaxation_options());
+    apply_events();
+}
+
+sim::StepReport EquilibriumSolver::advance(double time_limit) {
+    const double before = time_;
+    if (!relaxation_->at_rest() || !answer_) {
+        relax();
+        ++steps_;
+        return {.iterations = 1, .residual = relaxation_->residual()};
+    }
+    if (annealing()) {
+        anneal();
+        return {};
+    }
+    const auto& events = input_.films->events;
+    time_ = next_event_ < events.size() ? std::min(time_limit, std::max(time_, events[next_event_].time)) : time_limit;
+    apply_events();
+    ++steps_;
+    return {.step = time_ - before};
+}
+
+void EquilibriumSolver::relax() {
+    if (!relaxation_->at_rest()) {
+        if (++steps_to_rest_ > options_.max_steps)
+            throw NumericalError(fmt::format(
+                "the films did not come to rest in {} steps (residual {:.2g}); raise equilibrium.max_steps, or make "
+                "resolution.edge_length smaller where bubbles are small",
+                options_.max_steps, relaxation_->residual()));
+        relaxation_->advance();
+        collect_events();
+    }
+    if (relaxation_->at_rest()) come_to_rest();
+}
+
+void EquilibriumSolver::come_to_rest() {
+    steps_to_rest_ = 0;
+    if (annealing()) {  // examined at the end only
+        answer_.emplace();
+        return;
+    }
+    answer_ = rest_answer(relaxation_->mesh(), input_.films->tensions, options_.goal, options_.eigenvalue);
+}
+
+/// One round: shaken volumes come to rest, then the true ones do; the smaller area stays.
+void EquilibriumSolver::anneal() {
+    answer_.reset();
+    if (anneal_ == Anneal::kShaken) {
+        anneal_ = Anneal::kRest;
+        const auto& regions = best_mesh_.regions;
+        for (const RegionId r : regions.ids())
+            if (regions[r].kind == RegionKind::kClosed)
+                relaxation_->set_target_volume(r, regions[r].target_volume);
+        return;
+    }
+    const double area = mesh::total_area(relaxation_->mesh());
+    const bool first = best_mesh_.faces.empty();
+    const bool same_bubbles = first || relaxation_->mesh().regions.size() == best_mesh_.regions.size();
+    if (!first) ++anneal_round_;
+    if (first || (same_bubbles && area < best_area_)) {
+        best_area_ = area;
+        best_mesh_ = relaxation_->mesh();
+        best_edge_ = relaxation_->edge_length();
+    } else {
+        relaxation_->restart(best_mesh_, best_edge_);
+    }
+    if (annealing()) shake_volumes();
+}
+
+void EquilibriumSolver::shake_volumes() {
+    anneal_ = Anneal::kShaken;
+    for (const RegionId r : best_mesh_.regions.ids()) {
+        if (best_mesh_.regions[r].kind != RegionKind::kClosed) continue;
+        const double u = uniform01(random_bits(input_.seed, RandomStream::kAnneal,
+                                               static_cast<std::uint64_t>(anneal_round_), index(r)));
+        relaxation_->set_target_volume(
+            r, best_mesh_.regions[r].target_volume * (1.0 + options_.anneal_strength * (2.0 * u - 1.0)));
+    }
+}
+
+void EquilibriumSolver::apply_events() {
+    const auto& events = input_.films->events;
+    for (; next_event_ < events.size() && events[next_event_].time <= time_; ++next_event_) apply(events[next_event_]);
+}
+
+void EquilibriumSolver::apply(const film::Event& event) {
+    const auto& regions = relaxation_->mesh().regions;
+    if (index(event.region) >= regions.size() || regions[event.region].kind != RegionKind::kClosed) {
+        events_.push_back({time_, "skipped", {}, fmt::format("bubble {} is gone already", index(event.region))});
+        return;
+    }
+    answer_.reset();
+    if (event.kind == film::Event::Kind::kInflate) {
+        relaxation_->set_target_volume(event.region, event.volume);
+        events_.push_back({time_, "inflate", {}, fmt::format("bubble {}", index(event.region))});
+        return;
+    }
+    const RegionId into = event.into == film::kLargestNeighbor ? largest_neighbor(relaxation_->mesh(), event.region)
+                                                               : event.into;
+    relaxation_->pop(event.region, into);
+    collect_events();
+}
+
+void EquilibriumSolver::collect_events() {
+    for (const mesh::TopologyEvent& event : relaxation_->take_events())
+        events_.push_back({time_, std::string(mesh::name(event.kind)), event.position,
+                           fmt::format("regions {} {}", index(event.a), index(event.b))});
+}
+
+std::optional<std::string> EquilibriumSolver::stop_reason() const {
+    if (input_.end_time > 0.0 || !answer_ || annealing() || next_event_ < input_.films->events.size())
+        return std::nullopt;
+    return "the films are at rest";
+}
+
+std::vector<sim::Event> EquilibriumSolver::take_events() { return std::exchange(events_, {}); }
+
+void EquilibriumSolver::save(sim::StateWriter& out) const {
+    out.write_value("time", time_);
+    out.write_value("steps", steps_);
+    out.write_value("next_event", static_cast<std::int64_t>(next_event_));
+    out.write_value("steps_to_rest", static_cast<std::int64_t>(steps_to_rest_));
+    out.write_value("has_answer", static_cast<std::int64_t>(answer_ ? 1 : 0));
+    out.write_value("anneal", static_cast<std::int64_t>(anneal_));
+    out.write_value("anneal_round", static_cast<std::int64_t>(anneal_round_));
+    out.write_value("best_area", best_area_);
+    out.write_value("best_edge", best_edge_);
+    sim::save_mesh(out, "best", best_mesh_);
+    relaxation_->save(out);
+}
+
+void EquilibriumSolver::load(sim::StateReader& in) {
+    time_ = in.read_double("time");
+    steps_ = in.read_integer("steps");
+    next_event_ = static_cast<std::size_t>(in.read_integer("next_event"));
+    steps_to_rest_ = static_cast<int>(in.read_integer("steps_to_rest"));
+    const bool has_answer = in.read_integer("has_answer") != 0;
+    anneal_ = in.read_integer("anneal") == 0 ? Anneal::kRest : Anneal::kShaken;
+    anneal_round_ = static_cast<int>(in.read_integer("anneal_round"));
+    best_area_ = in.read_double("best_area");
+    best_edge_ = in.read_double("best_edge");
+    best_mesh_ = sim::load_mesh(in, "best");
+    relaxation_ = std::make_unique<Relaxation>(in, relaxation_options());
+    const int steps = steps_to_rest_;
+    if (has_answer) come_to_rest();
+    steps_to_rest_ = steps;
+}
+
+}  // namespace lamella::equilibrium

@@ -1,0 +1,137 @@
+// What can be seen of films at rest: the frame, its scalars, and the numbers that `lamella check` prints.
+
+#include "lamella/mesh/area.h"
+#include "lamella/mesh/quality.h"
+#include "lamella/mesh/volume.h"
+#include "lamella/solvers/equilibrium/equilibrium_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lamella::equilibrium {
+namespace {
+
+using mesh::FoamMesh;
+using mesh::RegionKind;
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+
+double worst_volume_error(const FoamMesh& mesh) {
+    const auto volumes = mesh::region_volumes(mesh);
+    double worst = 0.0;
+    for (const mesh::RegionId r : mesh.regions.ids())
+        if (mesh.regions[r].kind == RegionKind::kClosed)
+            worst = std::max(worst, std::abs(volumes[r] / mesh.regions[r].target_volume - 1.0));
+    return worst;
+}
+
+std::vector<double> of_vertices(const FoamMesh& mesh, const auto& value) {
+    std::vector<double> values;
+    for (const mesh::VertexId v : mesh.position.ids()) values.push_back(value(v));
+    return values;
+}
+
+}  // namespace
+
+sim::Frame EquilibriumSolver::frame() const {
+    const FoamMesh& mesh = relaxation_->mesh();
+    sim::Frame frame;
+    frame.solver = "equilibrium";
+    frame.time = time_;
+    frame.step = steps_;
+    sim::Surface& surface = frame.surface;
+    if (mesh.periodic()) {  // every face is shown whole: its corners are its own
+        for (const mesh::FaceId f : mesh.faces.ids())
+            for (std::size_t k = 0; k < 3; ++k) surface.position.push_back(mesh.corner(f, k));
+        for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) surface.triangles.push_back({3 * f, 3 * f + 1, 3 * f + 2});
+    } else {
+        surface.position = mesh.position.values();
+        for (const mesh::Face& face : mesh.faces) {
+            std::array<std::uint32_t, 3> corners{};
+            for (std::size_t k = 0; k < 3; ++k) corners[k] = static_cast<std::uint32_t>(index(face.vertices[k]));
+            surface.triangles.push_back(corners);
+        }
+        surface.vertex_fields.push_back({"on_wire", "-", 1, true, of_vertices(mesh, [&](mesh::VertexId v) {
+                                             return static_cast<double>(mesh.on_wire[v]);
+                                         })});
+    }
+    const double tension = input_.films->material.film_tension();
+    sim::Field jump{"pressure_difference", "Pa", 1, false, {}};
+    const auto pressure = [&](mesh::RegionId r) {
+        const auto& known = answer_ && !answer_->pressure.empty() ? answer_->pressure : relaxation_->pressure();
+        return index(r) < known.size() ? tension * known[index(r)] : 0.0;
+    };
+    for (const mesh::Face& face : mesh.faces) {
+        surface.regions.push_back(
+            {static_cast<std::int32_t>(index(face.back)), static_cast<std::int32_t>(index(face.front))});
+        jump.values.push_back(pressure(face.back) - pressure(face.front));
+    }
+    surface.face_fields.push_back(std::move(jump));
+    frame.scalars = scalars();
+    return frame;
+}
+
+std::vector<sim::Scalar> EquilibriumSolver::scalars() const {
+    const FoamMesh& mesh = relaxation_->mesh();
+    const double tension = input_.films->material.film_tension();
+    const bool known = answer_ && answer_->area > 0.0;
+    const auto at_rest = [&](auto&& value) {  // not a number until the films are at rest
+        return known ? static_cast<double>(value(*answer_)) : std::numeric_limits<double>::quiet_NaN();
+    };
+    const double flat = mesh::total_area(mesh);
+    const auto bubbles = std::count_if(mesh.regions.begin(), mesh.regions.end(),
+                                       [](const mesh::Region& r) { return r.kind == RegionKind::kClosed; });
+    return {
+        {"at_rest", "-", known ? 1.0 : 0.0, "1 when the films are at rest"},
+        {"residual", "-", relaxation_->residual(), "force out of balance, relative to the films' own"},
+        {"bubbles", "-", static_cast<double>(bubbles), "closed regions"},
+        {"polyhedral_area", "m^2", flat, "of the flat triangles"},
+        {"area", "m^2", at_rest([](const RestAnswer& a) { return a.area; }),
+         "of curved triangles at rest, weighted with the films' tensions"},
+        {"surface_energy", "J", tension * at_rest([](const RestAnswer& a) { return a.area; }), "film tension * area"},
+        {"volume_error", "-", worst_volume_error(mesh), "largest relative error of a bubble's volume"},
+        {"virial", "-", at_rest([](const RestAnswer& a) { return a.virial; }),
+         "1.5 sum p V / area - 1: the error of the pressures; 0 with wires"},
+        {"unstable_modes", "-", at_rest([](const RestAnswer& a) { return a.index; }),
+         "negative eigenvalues of the second variation"},
+        {"lowest_eigenvalue", "1/m^2", at_rest([](const RestAnswer& a) { return a.lowest_eigenvalue; }),
+         "of the second variation per area, over the film tension"},
+        {"irregular_vertices", "-", at_rest([](const RestAnswer& a) { return a.irregular_vertices; }),
+         "where films cross as Plateau's laws forbid"},
+        {"stable", "-", at_rest([](const RestAnswer& a) { return a.stable() ? 1.0 : 0.0; }),
+         "1: at rest, no unstable mode, nothing that could part"},
+        {"film_angle_mean_error", "deg", at_rest([](const RestAnswer& a) { return kDegrees * a.film_angles.mean; }),
+         "from 120 degrees, between curved films"},
+        {"film_angle_max_error", "deg", at_rest([](const RestAnswer& a) { return kDegrees * a.film_angles.largest; }),
+         "from 120 degrees, between curved films"},
+        {"line_angle_mean_error", "deg",
+         at_rest([](const RestAnswer& a) { return kDegrees * a.junction_angles.mean; }),
+         "from 109.47 degrees, between curved triple lines"},
+        {"line_angle_max_error", "deg",
+         at_rest([](const RestAnswer& a) { return kDegrees * a.junction_angles.largest; }),
+         "from 109.47 degrees, between curved triple lines"},
+        {"faces", "-", static_cast<double>(mesh.faces.size()), "triangles"},
+        {"min_angle", "deg", kDegrees * mesh::min_angle(mesh), "smallest angle of a triangle"},
+        {"steps", "-", static_cast<double>(steps_), "taken"},
+    };
+}
+
+std::vector<sim::Scalar> EquilibriumSolver::characteristic_numbers() const {
+    const film::Problem& films = *input_.films;
+    const auto bubbles = std::count_if(films.mesh.regions.begin(), films.mesh.regions.end(),
+                                       [](const mesh::Region& r) { return r.kind == RegionKind::kClosed; });
+    double gas = 0.0;
+    for (const mesh::Region& r : films.mesh.regions)
+        if (r.kind == RegionKind::kClosed) gas += r.target_volume;
+    return {
+        {"film_tension", "N/m", films.material.film_tension(), "twice the surface tension"},
+        {"bubbles", "-", static_cast<double>(bubbles), "closed regions"},
+        {"gas_volume", "m^3", gas, "of all bubbles"},
+        {"edge_length", "m", films.edge_length, "of the mesh at rest"},
+        {"faces", "-", static_cast<double>(films.mesh.faces.size()), "triangles at the start"},
+        {"start_area", "m^2", mesh::total_area(films.mesh), "of the films at the start"},
+    };
+}
+
+}  // namespace lamella::equilibrium
