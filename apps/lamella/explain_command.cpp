@@ -1,5 +1,6 @@
 #include "lamella/core/error.h"
 #include "lamella/core/nearest_word.h"
+#include "lamella/scene/film_tables.h"
 #include "lamella/scene/scene.h"
 #include "lamella/sim/read_options.h"
 
@@ -40,6 +41,8 @@ std::vector<Topic> all_topics() {
     topics.push_back({"time", "how long a run is and when it is looked at; in the solver's unit of time",
                       sim::describe_options<scene::TimeOptions>()});
     topics.push_back({"output", "what is written", sim::describe_options<scene::OutputOptions>()});
+    for (scene::FilmTableInfo& table : scene::film_table_infos())
+        topics.push_back({table.list ? "[[" + table.name + "]]" : table.name, table.summary, std::move(table.options)});
     return topics;
 }
 

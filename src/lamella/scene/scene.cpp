@@ -7,6 +7,7 @@
 #include "lamella/scene/detail/scene_file.h"
 #include "lamella/scene/detail/toml_reader.h"
 #include "lamella/scene/detail/toml_writer.h"
+#include "lamella/scene/film_tables.h"
 #include "lamella/sim/read_options.h"
 
 #include <fmt/format.h>
@@ -70,9 +71,19 @@ std::optional<std::string> option_named(const std::string& key,
     return std::nullopt;
 }
 
+/// Whether the scene's solver starts from the film tables; false where it names none.
+bool wants_films(const Scene& scene, const sim::SolverRegistry& registry) {
+    const sim::Node* chosen = scene.root.find("solver");
+    const auto* name = chosen != nullptr ? std::get_if<std::string>(&chosen->value) : nullptr;
+    const sim::SolverEntry* solver = name != nullptr ? registry.find(*name) : nullptr;
+    return solver != nullptr && solver->films;
+}
+
 void refuse_unknown_keys(const Scene& scene, const sim::SolverRegistry& registry) {
     std::vector<std::string> known = solver_names(registry);
     for (const char* name : {"title", "solver", "seed", "time", "output"}) known.emplace_back(name);
+    if (wants_films(scene, registry))
+        for (const FilmTableInfo& table : film_table_infos()) known.push_back(table.name);
     for (const auto& [key, node] : *scene.root.table()) {
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         std::optional<std::string> meant = option_named(key, scene, registry);
@@ -184,13 +195,17 @@ Scene parse_scene(std::string_view text,
     read_header(scene);
     const sim::SolverEntry& solver = chosen_solver(scene, registry);
     for (const sim::SolverEntry& other : registry.entries())
-        if (other.name != solver.name && scene.root.find(other.name) != nullptr)
+        if (other.name != solver.name && scene.root.find(other.name) != nullptr &&
+            !(solver.films && scene.root.find(other.name)->array() != nullptr))
             scene.notes.push_back(fmt::format("[{}] is not used by solver {}", other.name, solver.name));
 
     scene.time = sim::read_options<TimeOptions>(table_of(scene, "time"), units_of(solver));
     scene.output = sim::read_options<OutputOptions>(table_of(scene, "output"));
     check_output_count(scene, "frame_rate", scene.time.frame_rate);
     check_output_count(scene, "series_rate", scene.time.series_rate);
+    if (solver.films)
+        scene.films = std::make_shared<film::Problem>(
+            film_problem(read_film_tables(scene.root), scene.root, scene.seed));
     create_solver(scene, registry);
     return scene;
 }
@@ -201,6 +216,7 @@ std::string resolved_toml(const Scene& scene, const sim::SolverRegistry& registr
     return resolved_table("", header) + "\n" +              //
            resolved_table("time", scene.time) + "\n" +      //
            resolved_table("output", scene.output) + "\n" +  //
+           (solver.films ? film_tables_toml(read_film_tables(scene.root), scene.films->edge_length) : "") +
            detail::toml_text(solver.name, resolved_options(scene, solver), comments_from(solver.describe()));
 }
 
@@ -213,7 +229,8 @@ std::unique_ptr<sim::Solver> create_solver(const Scene& scene, const sim::Solver
     return solver.create({.seed = scene.seed,
                           .end_time = scene.time.end,
                           .read_table = read_table,
-                          .options = table_of(scene, solver.name)});
+                          .options = table_of(scene, solver.name),
+                          .films = scene.films});
 }
 
 }  // namespace lamella::scene

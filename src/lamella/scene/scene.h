@@ -58,6 +58,7 @@ struct Scene {
     TimeOptions time;
     OutputOptions output;
     sim::Node root;                  ///< everything that was written, overrides applied
+    std::shared_ptr<const film::Problem> films;  ///< of a film solver, otherwise empty
     std::vector<std::string> notes;  ///< e.g. "[melp] is not used by solver bubble"
 };
 

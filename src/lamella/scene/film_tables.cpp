@@ -1,0 +1,279 @@
+#include "lamella/scene/film_tables.h"
+
+#include "lamella/core/error.h"
+#include "lamella/core/random.h"
+#include "lamella/mesh/check.h"
+#include "lamella/mesh/join.h"
+#include "lamella/mesh/shapes/periodic_foam.h"
+#include "lamella/mesh/shapes/power_cluster.h"
+#include "lamella/mesh/shapes/sphere.h"
+#include "lamella/mesh/shapes/standard_clusters.h"
+#include "lamella/scene/detail/toml_writer.h"
+#include "lamella/sim/read_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lamella::scene {
+namespace {
+
+using mesh::FoamMesh;
+using mesh::RegionKind;
+
+constexpr double kPi = 3.14159265358979323846;
+const sim::ModelUnits kSi{.length = "m", .mass = "kg", .time = "s"};
+
+template <class Table>
+std::vector<Table> read_list(const sim::Node& root, std::string_view name) {
+    std::vector<Table> tables;
+    const sim::Node* node = root.find(name);
+    if (node == nullptr || (name == "bubble" && node->table() != nullptr)) return tables;  // [bubble]: of that solver
+    const auto* items = node->array();
+    if (items == nullptr)
+        throw InputError(node->where, fmt::format("{} must be a list of tables: write [[{}]]", name, name));
+    for (const sim::Node& item : *items) tables.push_back(sim::read_options<Table>(item, kSi));
+    return tables;
+}
+
+template <class Table>
+Table read_one(const sim::Node& root, std::string_view name) {
+    const sim::Node* node = root.find(name);
+    return node != nullptr ? sim::read_options<Table>(*node, kSi) : Table{};
+}
+
+/// Where the k-th table of a list stands, for messages.
+SourceLocation place(const sim::Node& root, std::string_view name, std::size_t k) {
+    const sim::Node* node = root.find(name);
+    if (node == nullptr) return root.where;
+    const auto* items = node->array();
+    return items != nullptr && k < items->size() ? (*items)[k].where : node->where;
+}
+
+/// Calls make() and puts the place of a table before what it complains about.
+template <class Make>
+auto at_table(const SourceLocation& where, std::string_view name, Make&& make) {
+    try {
+        return make();
+    } catch (const InputError& error) {
+        throw InputError(where, fmt::format("{}: {}", name, error.what()));
+    }
+}
+
+mesh::Ball ball_of(const BubbleTable& bubble, const SourceLocation& where) {
+    if ((bubble.radius > 0.0) == (bubble.volume > 0.0))
+        throw InputError(where, "a bubble needs either its radius or its volume, e.g. radius = \"5 cm\"");
+    return {bubble.center, bubble.radius > 0.0 ? bubble.radius : std::cbrt(0.75 * bubble.volume / kPi)};
+}
+
+std::vector<double> foam_radii(const FoamTable& foam, std::uint64_t seed) {
+    const double mean = std::cbrt(0.75 * foam.volume / kPi);
+    std::vector<double> radii;
+    for (int k = 0; k < foam.count; ++k) {
+        const auto bits = random_bits(seed, RandomStream::kFoamSizes, 0, static_cast<std::uint64_t>(k));
+        const double z = normal(bits);
+        double radius = mean;
+        if (foam.sizes == FoamSizes::kNormal) radius = mean * std::clamp(1.0 + foam.deviation * z, 0.2, 3.0);
+        if (foam.sizes == FoamSizes::kLognormal) {
+            const double s = std::sqrt(std::log1p(foam.deviation * foam.deviation));
+            radius = mean * std::clamp(std::exp(s * z - 0.5 * s * s), 0.2, 3.0);
+        }
+        radii.push_back(radius);
+    }
+    return radii;
+}
+
+bool any_touch(const std::vector<mesh::Ball>& balls) {
+    for (std::size_t i = 0; i < balls.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (norm(balls[i].center - balls[j].center) <= balls[i].radius + balls[j].radius) return true;
+    return false;
+}
+
+/// Balls that touch become a cluster. Targets are the volumes of the balls.
+FoamMesh bubbles_of(const std::vector<mesh::Ball>& balls, double edge_length) {
+    if (!any_touch(balls)) return mesh::spheres(balls, edge_length);
+    FoamMesh cluster = mesh::power_cluster(balls, edge_length);
+    for (std::size_t k = 0; k < balls.size(); ++k)
+        cluster.regions[static_cast<mesh::RegionId>(k + 1)].target_volume =
+            4.0 / 3.0 * kPi * std::pow(balls[k].radius, 3);
+    return cluster;
+}
+
+FoamMesh film_of(const FilmTable& film, double h) {
+    switch (film.shape) {
+        case FilmShape::kDisk:
+            return mesh::disk(film.center, film.axis, film.radius, h);
+        case FilmShape::kRectangle:
+            return mesh::rectangle(film.center, film.u, film.v, h);
+        case FilmShape::kHemisphere:
+            return mesh::hemisphere(film.center, film.axis, film.radius, h);
+        case FilmShape::kCylinder:
+            return mesh::cylinder(film.center, film.axis, film.radius, film.separation, h);
+        case FilmShape::kCatenoid:
+            return mesh::catenoid(film.center, film.axis, film.radius, film.separation, h, film.branch);
+        case FilmShape::kFrame:
+            return mesh::frame_cone(film.frame, film.center, film.edge, h);
+        case FilmShape::kDoubleBubble: {
+            const double second = film.second_volume > 0.0 ? film.second_volume : film.volume;
+            FoamMesh bubbles = mesh::double_bubble(mesh::double_bubble_of_volumes(film.volume, second), h);
+            for (Vec3& x : bubbles.position) x += film.center;
+            return bubbles;
+        }
+        case FilmShape::kTripleBubble:
+            return mesh::triple_bubble(film.volume, h);
+        case FilmShape::kQuadrupleBubble:
+            return mesh::quadruple_bubble(film.volume, h);
+        case FilmShape::kKelvin:
+            return mesh::periodic_foam(mesh::PeriodicFoam::kKelvin, film.volume, h);
+        case FilmShape::kWeairePhelan:
+            return mesh::periodic_foam(mesh::PeriodicFoam::kWeairePhelan, film.volume, h);
+    }
+    return {};
+}
+
+/// What the edge length is taken from when the scene says none.
+double film_size(const FilmTable& film) {
+    switch (film.shape) {
+        case FilmShape::kDisk:
+        case FilmShape::kHemisphere:
+        case FilmShape::kCylinder:
+        case FilmShape::kCatenoid:
+            return 2.0 * film.radius;
+        case FilmShape::kRectangle:
+            return std::min(norm(film.u), norm(film.v));
+        case FilmShape::kFrame:
+            return 1.5 * film.edge;
+        default:
+            return std::cbrt(film.second_volume > 0.0 ? std::min(film.volume, film.second_volume) : film.volume) * 3.0;
+    }
+}
+
+double default_edge_length(const FilmTables& tables, const std::vector<mesh::Ball>& balls) {
+    double edge = 0.0;
+    const auto at_most = [&](double length) { edge = edge == 0.0 ? length : std::min(edge, length); };
+    for (const mesh::Ball& ball : balls) at_most(0.25 * ball.radius);
+    for (const FilmTable& film : tables.films) at_most(0.05 * film_size(film));
+    return edge;
+}
+
+std::vector<film::Event> events_of(const FilmTables& tables, const FoamMesh& mesh, const sim::Node& root) {
+    std::vector<film::Event> events;
+    for (std::size_t k = 0; k < tables.events.size(); ++k) {
+        const EventTable& event = tables.events[k];
+        const auto bubble = [&](int region) {
+            const bool there = region >= 0 && static_cast<std::size_t>(region) < mesh.regions.size();
+            return there ? mesh.regions[static_cast<mesh::RegionId>(region)].kind : RegionKind::kGone;
+        };
+        if (bubble(event.region) != RegionKind::kClosed)
+            throw InputError(place(root, "event", k),
+                             fmt::format("event.region = {} is no bubble; there are {} regions beside the outside",
+                                         event.region, mesh.regions.size() - 1));
+        if (event.into >= 0 && (bubble(event.into) == RegionKind::kGone || event.into == event.region))
+            throw InputError(place(root, "event", k),
+                             fmt::format("event.into = {} is no region that bubble {} could join", event.into,
+                                         event.region));
+        const auto region = static_cast<mesh::RegionId>(event.region);
+        const double volume = event.volume > 0.0 ? event.volume : event.factor * mesh.regions[region].target_volume;
+        events.push_back({.kind = event.kind,
+                          .time = event.time,
+                          .region = region,
+                          .into = event.into < 0 ? film::kLargestNeighbor : static_cast<mesh::RegionId>(event.into),
+                          .volume = volume});
+    }
+    std::stable_sort(events.begin(), events.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+    return events;
+}
+
+template <class Table>
+FilmTableInfo info_of(std::string name, std::string summary, bool list) {
+    return {std::move(name), std::move(summary), list, sim::describe_options<Table>()};
+}
+
+template <class Table>
+std::string toml_of(const std::string& name, const Table& table, bool list) {
+    const sim::Node node = sim::resolve_options(table);
+    const std::string text = detail::toml_text(name, node, [](std::string_view) { return std::string(); });
+    return (list ? "[" + text.substr(0, text.find('\n')) + "]" + text.substr(text.find('\n')) : text) + "\n";
+}
+
+}  // namespace
+
+std::vector<FilmTableInfo> film_table_infos() {
+    return {info_of<MaterialTable>("material", "the soap solution and the air around it", false),
+            info_of<ResolutionTable>("resolution", "how fine the films are", false),
+            info_of<BubbleTable>("bubble", "one bubble: [[bubble]]; those that touch become a cluster", true),
+            info_of<FilmTable>("film", "one film or cluster of a known shape: [[film]]", true),
+            info_of<FoamTable>("foam", "a cluster of bubbles in random places", false),
+            info_of<TensionTable>("tension", "films that are tenser than others: [[tension]]", true),
+            info_of<EventTable>("event", "what happens to bubbles on the way: [[event]]", true)};
+}
+
+FilmTables read_film_tables(const sim::Node& root) {
+    FilmTables tables{.material = read_one<MaterialTable>(root, "material"),
+                      .resolution = read_one<ResolutionTable>(root, "resolution"),
+                      .bubbles = read_list<BubbleTable>(root, "bubble"),
+                      .films = read_list<FilmTable>(root, "film"),
+                      .foams = {},
+                      .tensions = read_list<TensionTable>(root, "tension"),
+                      .events = read_list<EventTable>(root, "event")};
+    if (root.find("foam") != nullptr) tables.foams.push_back(read_one<FoamTable>(root, "foam"));
+    return tables;
+}
+
+film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std::uint64_t seed) {
+    std::vector<mesh::Ball> balls;
+    for (std::size_t k = 0; k < tables.bubbles.size(); ++k)
+        balls.push_back(ball_of(tables.bubbles[k], place(root, "bubble", k)));
+    if (balls.empty() && tables.films.empty() && tables.foams.empty())
+        throw InputError({root.where.file, 0, 0},
+                         "the scene has no films; add a [[bubble]] with center and radius, a [[film]], or [foam]");
+    std::vector<mesh::Ball> cluster;
+    if (!tables.foams.empty())
+        cluster = at_table(place(root, "foam", 0), "foam",
+                           [&] { return mesh::pack_balls(foam_radii(tables.foams[0], seed), seed); });
+
+    film::Problem problem;
+    problem.material = tables.material;
+    std::vector<mesh::Ball> all = balls;
+    all.insert(all.end(), cluster.begin(), cluster.end());
+    problem.edge_length = tables.resolution.edge_length > 0.0 ? tables.resolution.edge_length
+                                                              : default_edge_length(tables, all);
+    const double h = problem.edge_length;
+    problem.mesh.regions.push_back({RegionKind::kOpen, 0.0});
+    const auto add = [&](FoamMesh part) {
+        if (problem.mesh.faces.empty()) problem.mesh = std::move(part);
+        else mesh::join(problem.mesh, part);
+    };
+    if (!balls.empty()) at_table(place(root, "bubble", 0), "bubble", [&] { add(bubbles_of(balls, h)); });
+    for (std::size_t k = 0; k < tables.films.size(); ++k)
+        at_table(place(root, "film", k), "film", [&] { add(film_of(tables.films[k], h)); });
+    if (!cluster.empty()) at_table(place(root, "foam", 0), "foam", [&] { add(bubbles_of(cluster, h)); });
+    mesh::require_sound(problem.mesh, root.where.file.empty() ? "the films" : root.where.file);
+
+    for (std::size_t k = 0; k < tables.tensions.size(); ++k) {
+        const TensionTable& t = tables.tensions[k];
+        if (static_cast<std::size_t>(std::max(t.a, t.b)) >= problem.mesh.regions.size() || t.a == t.b)
+            throw InputError(place(root, "tension", k),
+                             fmt::format("tension.a = {} and b = {} are no two regions of this scene", t.a, t.b));
+        problem.tensions.push_back({static_cast<mesh::RegionId>(t.a), static_cast<mesh::RegionId>(t.b), t.factor});
+    }
+    problem.events = events_of(tables, problem.mesh, root);
+    return problem;
+}
+
+std::string film_tables_toml(const FilmTables& tables, double edge_length) {
+    std::string text = toml_of("material", tables.material, false);
+    ResolutionTable resolution = tables.resolution;
+    resolution.edge_length = edge_length;
+    text += toml_of("resolution", resolution, false);
+    for (const BubbleTable& bubble : tables.bubbles) text += toml_of("bubble", bubble, true);
+    for (const FilmTable& film : tables.films) text += toml_of("film", film, true);
+    for (const FoamTable& foam : tables.foams) text += toml_of("foam", foam, false);
+    for (const TensionTable& tension : tables.tensions) text += toml_of("tension", tension, true);
+    for (const EventTable& event : tables.events) text += toml_of("event", event, true);
+    return text;
+}
+
+}  // namespace lamella::scene

@@ -1,0 +1,202 @@
+#pragma once
+
+// The tables of a scene that say which films there are, shared by all film solvers. docs/scenes.md shows them.
+
+#include "lamella/film/problem.h"
+#include "lamella/mesh/shapes/wire_films.h"
+#include "lamella/sim/options.h"
+#include "lamella/sim/registry.h"
+
+#include <string>
+#include <vector>
+
+namespace lamella::scene {
+
+/// [material]
+struct MaterialTable : film::Material {
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("surface_tension", surface_tension, sim::more_than(0.0),
+               {"of ONE liquid-air interface; a film has two", "mass/time^2"});
+        option("air_density", air_density, sim::at_least(0.0), {"of the gas on both sides", "mass/length^3"});
+        option("thickness", thickness, sim::more_than(0.0), {"of the film", "length"});
+        option("gravity", gravity, sim::any_number(), {"acceleration", "length/time^2"});
+    }
+};
+
+/// [resolution]
+struct ResolutionTable {
+    double edge_length = 0.0;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("edge_length", edge_length, sim::at_least(0.0),
+               {"of the triangles; 0: a quarter of the smallest bubble's radius, or a twentieth of the films' size",
+                "length"});
+    }
+};
+
+/// One [[bubble]]
+struct BubbleTable {
+    Vec3 center;
+    double radius = 0.0;
+    double volume = 0.0;
+    Vec3 velocity;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("center", center, sim::any_number(), {"where it is", "length"});
+        option("radius", radius, sim::at_least(0.0), {"of the ball; this or volume", "length"});
+        option("volume", volume, sim::at_least(0.0), {"of its gas; this or radius", "length^3"});
+        option("velocity", velocity, sim::any_number(), {"at the start, for the solvers that move", "length/time"});
+    }
+};
+
+enum class FilmShape {
+    kDisk, kRectangle, kHemisphere, kCylinder, kCatenoid, kFrame, kDoubleBubble, kTripleBubble, kQuadrupleBubble,
+    kKelvin, kWeairePhelan
+};
+
+/// One [[film]]
+struct FilmTable {
+    FilmShape shape = FilmShape::kDisk;
+    Vec3 center;
+    Vec3 axis{{0.0, 0.0, 1.0}};
+    double radius = 0.05;
+    double separation = 0.04;
+    mesh::CatenoidBranch branch = mesh::CatenoidBranch::kStable;
+    Vec3 u{{0.1, 0.0, 0.0}};
+    Vec3 v{{0.0, 0.1, 0.0}};
+    mesh::FrameShape frame = mesh::FrameShape::kCube;
+    double edge = 0.1;
+    double volume = 1e-4;
+    double second_volume = 0.0;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("shape", shape,
+               sim::choices<FilmShape>({{"disk", FilmShape::kDisk},
+                                        {"rectangle", FilmShape::kRectangle},
+                                        {"hemisphere", FilmShape::kHemisphere},
+                                        {"cylinder", FilmShape::kCylinder},
+                                        {"catenoid", FilmShape::kCatenoid},
+                                        {"frame", FilmShape::kFrame},
+                                        {"double_bubble", FilmShape::kDoubleBubble},
+                                        {"triple_bubble", FilmShape::kTripleBubble},
+                                        {"quadruple_bubble", FilmShape::kQuadrupleBubble},
+                                        {"kelvin", FilmShape::kKelvin},
+                                        {"weaire_phelan", FilmShape::kWeairePhelan}}),
+               {"what it is; frame: films from the edges of a wire frame to its center; kelvin and weaire_phelan:"
+                " foams that fill space"});
+        option("center", center, sim::any_number(), {"of the film; of a rectangle, its first corner", "length"});
+        option("axis", axis, sim::any_number(), {"normal of a disk, axis of the round shapes"});
+        option("radius", radius, sim::more_than(0.0), {"of the ring or rings", "length"});
+        option("separation", separation, sim::more_than(0.0), {"of the two rings of a cylinder or catenoid", "length"});
+        option("branch", branch,
+               sim::choices<mesh::CatenoidBranch>(
+                   {{"stable", mesh::CatenoidBranch::kStable}, {"unstable", mesh::CatenoidBranch::kUnstable}}),
+               {"of a catenoid: with the wide neck or the narrow one"});
+        option("u", u, sim::any_number(), {"first side of a rectangle", "length"});
+        option("v", v, sim::any_number(), {"second side of a rectangle, at a right angle", "length"});
+        option("frame", frame,
+               sim::choices<mesh::FrameShape>({{"tetrahedron", mesh::FrameShape::kTetrahedron},
+                                               {"cube", mesh::FrameShape::kCube},
+                                               {"octahedron", mesh::FrameShape::kOctahedron}}),
+               {"of a frame: the wire"});
+        option("edge", edge, sim::more_than(0.0), {"of the frame's wires", "length"});
+        option("volume", volume, sim::more_than(0.0), {"of each bubble; of a double_bubble, its first", "length^3"});
+        option("second_volume", second_volume, sim::at_least(0.0),
+               {"of the second bubble of a double_bubble; 0: equal", "length^3"});
+    }
+};
+
+enum class FoamSizes { kEqual, kNormal, kLognormal };
+
+/// [foam]: a cluster of bubbles
+struct FoamTable {
+    int count = 10;
+    double volume = 1e-6;
+    FoamSizes sizes = FoamSizes::kEqual;
+    double deviation = 0.2;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("count", count, sim::between(1, 100'000), {"bubbles"});
+        option("volume", volume, sim::more_than(0.0), {"of a bubble, on average", "length^3"});
+        option("sizes", sizes,
+               sim::choices<FoamSizes>(
+                   {{"equal", FoamSizes::kEqual}, {"normal", FoamSizes::kNormal}, {"lognormal", FoamSizes::kLognormal}}),
+               {"how the bubbles' radii are distributed"});
+        option("deviation", deviation, sim::between(0.0, 1.0),
+               {"standard deviation of the radii over their mean, for normal and lognormal"});
+    }
+};
+
+/// One [[tension]]
+struct TensionTable {
+    int a = 0;
+    int b = 1;
+    double factor = 1.0;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("a", a, sim::at_least(0), {"a region; 0 is the outside"});
+        option("b", b, sim::at_least(0), {"another"});
+        option("factor", factor, sim::more_than(0.0), {"how tense the films between them are, over the material's"});
+    }
+};
+
+/// One [[event]]
+struct EventTable {
+    double time = 0.0;
+    film::Event::Kind kind = film::Event::Kind::kPop;
+    int region = 1;
+    int into = -1;
+    double volume = 0.0;
+    double factor = 1.0;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("time", time, sim::at_least(0.0), {"when", "time"});
+        option("kind", kind,
+               sim::choices<film::Event::Kind>(
+                   {{"pop", film::Event::Kind::kPop}, {"inflate", film::Event::Kind::kInflate}}),
+               {"pop: the film to another region bursts; inflate: a bubble gets another volume"});
+        option("region", region, sim::at_least(1), {"which bubble"});
+        option("into", into, sim::at_least(-1),
+               {"pop: the region that it joins; -1: the one that shares most film with it"});
+        option("volume", volume, sim::at_least(0.0), {"inflate: the new volume; 0: `factor` times the first", "length^3"});
+        option("factor", factor, sim::more_than(0.0), {"inflate: the new volume over the first"});
+    }
+};
+
+/// All of them, as read.
+struct FilmTables {
+    MaterialTable material;
+    ResolutionTable resolution;
+    std::vector<BubbleTable> bubbles;
+    std::vector<FilmTable> films;
+    std::vector<FoamTable> foams;  ///< none or one
+    std::vector<TensionTable> tensions;
+    std::vector<EventTable> events;
+};
+
+/// Their names, and how each is described: "[[bubble]]" may be there several times, "[foam]" once.
+struct FilmTableInfo {
+    std::string name;
+    std::string summary;
+    bool list;
+    std::vector<sim::OptionInfo> options;
+};
+std::vector<FilmTableInfo> film_table_infos();
+
+/// @param root  the whole scene  @throws InputError  file:line, key, what was found and what is allowed
+FilmTables read_film_tables(const sim::Node& root);
+
+/// The films that they describe. @throws InputError  naming the table at fault
+film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std::uint64_t seed);
+
+/// As TOML, every default filled in.
+std::string film_tables_toml(const FilmTables& tables, double edge_length);
+
+}  // namespace lamella::scene
