@@ -57,6 +57,7 @@ void write_checkpoint(const std::filesystem::path& path,
                       const RunState& state) {
     io::CheckpointWriter file(path, solver_name);
     file.write_value("run/output_time", state.output_time);
+    file.write_value("run/output_step", state.output_step);
     file.write_value("run/frames", static_cast<std::int64_t>(state.frame_times.size()));
     file.write("run/frame_times", std::span<const double>(state.frame_times));
     file.write_value("run/series_bytes", static_cast<std::int64_t>(state.series_bytes));
@@ -70,6 +71,7 @@ RunState read_checkpoint(const std::filesystem::path& path, const std::string& s
     io::CheckpointReader file(path, solver_name);
     RunState state;
     state.output_time = file.read_double("run/output_time");
+    state.output_step = file.read_integer("run/output_step");
     file.read("run/frame_times", read_size(file, "run/frames"), state.frame_times);
     state.series_bytes = read_size(file, "run/series_bytes");
     state.events_bytes = read_size(file, "run/events_bytes");

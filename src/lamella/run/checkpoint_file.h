@@ -12,6 +12,7 @@ namespace lamella::run {
 /// What the loop itself must remember beside the solver's state.
 struct RunState {
     double output_time = -1.0;        ///< the last output time that is written; negative: none yet
+    std::int64_t output_step = 0;     ///< the solver's step at that output
     std::vector<double> frame_times;  ///< one per frame file
     std::uint64_t series_bytes = 0;   ///< length of series.csv at this state; what follows is of a later one
     std::uint64_t events_bytes = 0;

@@ -104,7 +104,8 @@ void Loop::run_to_end() {
         const OutputTime due = started() ? schedule_.next(state_.output_time) : OutputTime{time, true};
         if (is_after(due.time, state_.output_time) && !is_after(due.time, time)) {
             write_output({due.time, due.frame || reason});
-        } else if (reason && is_after(time, state_.output_time)) {
+        } else if (reason && (is_after(time, state_.output_time) || solver_->step() > state_.output_step)) {
+            // A solver that looks for a rest may have changed everything in no time.
             write_output({time, true});
         }
         if (reason) {
@@ -150,6 +151,7 @@ void Loop::write_output(OutputTime due) {
         if (due.frame && scene_.output.frames) write_frame(frame);
     });
     state_.output_time = due.time;
+    state_.output_step = solver_->step();
 }
 
 void Loop::write_frame(const sim::Frame& frame) {

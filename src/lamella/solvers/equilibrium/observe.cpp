@@ -1,9 +1,10 @@
 // What can be seen of films at rest: the frame, its scalars, and the numbers that `lamella check` prints.
 
 #include "lamella/mesh/area.h"
+#include "lamella/mesh/edge_faces.h"
 #include "lamella/mesh/quality.h"
-#include "lamella/mesh/volume.h"
 #include "lamella/solvers/equilibrium/equilibrium_solver.h"
+#include "lamella/solvers/equilibrium/rest_system.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,11 +19,11 @@ using mesh::RegionKind;
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 double worst_volume_error(const FoamMesh& mesh) {
-    const auto volumes = mesh::region_volumes(mesh);
+    const RestSystem system(mesh, mesh::edge_faces(mesh), flat_patches(mesh, {}));
+    const Balance balance = system.balance(false);
     double worst = 0.0;
-    for (const mesh::RegionId r : mesh.regions.ids())
-        if (mesh.regions[r].kind == RegionKind::kClosed)
-            worst = std::max(worst, std::abs(volumes[r] / mesh.regions[r].target_volume - 1.0));
+    for (std::size_t c = 0; c < balance.missing.size(); ++c)
+        worst = std::max(worst, std::abs(balance.missing[c]) / system.target(c));
     return worst;
 }
 

@@ -1,7 +1,9 @@
 #include "lamella/solvers/equilibrium/relaxation.h"
 
 #include "lamella/core/error.h"
+#include "lamella/core/random.h"
 #include "lamella/mesh/edge_faces.h"
+#include "lamella/mesh/plateau_faults.h"
 #include "lamella/mesh/quality.h"
 #include "lamella/mesh/smoothing.h"
 #include "lamella/mesh/subdivide.h"
@@ -182,7 +184,7 @@ void Relaxation::settle() {
         tidy();
         return;
     }
-    if (tracker_changes_topology()) return;
+    if (tracker_changes_topology() || leaves_crossing()) return;
     if (edge_length_ > 1.5 * options_.edge_length) {
         refine();
         return;
@@ -220,6 +222,24 @@ bool Relaxation::tracker_changes_topology() {
     return changed;
 }
 
+/// A crossing may balance: where parting gains nothing at first the tracker leaves it. Pushed off its place at random it
+/// is no longer in balance, and the tracker can choose. A crossing that survives a few pushes stays.
+bool Relaxation::leaves_crossing() {
+    constexpr int kMostPushes = 5;
+    if (!options_.separating || pushes_ >= kMostPushes) return false;
+    const auto faults = mesh::plateau_faults(mesh(), mesh::edge_faces(mesh()));
+    if (faults.none()) return false;
+    ++pushes_;
+    IdVector<VertexId, Vec3> push(mesh().position.size());
+    for (const VertexId v : faults.vertices)
+        push[v] = tracker_->options().longest_step * edge_length_ *
+                  unit_vector<3>(random_bits(0, RandomStream::kMeshJitter, static_cast<std::uint64_t>(steps_), index(v)));
+    tracker_->move(push);
+    tracker_->remesh();
+    failed_settles_ = 2;  // let the flow take it from there
+    return true;
+}
+
 void Relaxation::refine() {
     const mesh::EdgeFaces edges = mesh::edge_faces(mesh());
     take(mesh::subdivide(mesh(), edges, mesh::edge_middles(mesh(), edges)), 0.5 * edge_length_);
@@ -251,6 +271,7 @@ Relaxation::Relaxation(sim::StateReader& in, const RelaxationOptions& options) :
     steps_ = static_cast<int>(in.read_integer("relaxation/steps"));
     failed_settles_ = static_cast<int>(in.read_integer("relaxation/failed_settles"));
     slow_steps_ = static_cast<int>(in.read_integer("relaxation/slow_steps"));
+    pushes_ = static_cast<int>(in.read_integer("relaxation/pushes"));
 }
 
 void Relaxation::save(sim::StateWriter& out) const {
@@ -262,6 +283,7 @@ void Relaxation::save(sim::StateWriter& out) const {
     out.write_value("relaxation/steps", static_cast<std::int64_t>(steps_));
     out.write_value("relaxation/failed_settles", static_cast<std::int64_t>(failed_settles_));
     out.write_value("relaxation/slow_steps", static_cast<std::int64_t>(slow_steps_));
+    out.write_value("relaxation/pushes", static_cast<std::int64_t>(pushes_));
 }
 
 }  // namespace lamella::equilibrium

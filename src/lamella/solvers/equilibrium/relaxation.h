@@ -70,6 +70,7 @@ private:
     void settle_frozen();
     void keep_pressures(const RestSystem& system, const Newton& newton);
     bool tracker_changes_topology();
+    bool leaves_crossing();
     void refine();
     double flow_time() const;
     void measure();
@@ -84,6 +85,7 @@ private:
     int steps_ = 0;
     int failed_settles_ = 0;
     int slow_steps_ = 0;
+    int pushes_ = 0;
     double best_residual_ = 1.0;
     std::vector<mesh::TopologyEvent> events_;
 };

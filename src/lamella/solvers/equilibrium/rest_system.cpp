@@ -213,47 +213,79 @@ std::vector<Vec3> RestSystem::project_volumes(std::vector<Vec3> position, int ro
     return std::exchange(patches_.position, start);
 }
 
+namespace {
+
+/// A side of a face: 2 f behind it, 2 f + 1 in front.
+std::size_t side_of(const mesh::EdgeUse& use, bool ahead) {
+    // Seen along the edge from a to b, a face that runs from a to b has its front counterclockwise of itself.
+    return 2 * index(use.face) + (use.forward == ahead ? 1 : 0);
+}
+
+/// Two sides with the same gas between them, across an edge.
+struct Contact {
+    std::size_t side;
+    Vec3 step;  // what to add to the shift of this side to get that of the other
+};
+
+/// For every side its contacts across the face's edges. A bubble may meet itself, so labels do not tell which sides
+/// belong together: their order around the edge does.
+std::vector<std::vector<Contact>> contacts(const mesh::FoamMesh& mesh, const mesh::EdgeFaces& edges) {
+    std::vector<std::vector<Contact>> found(2 * mesh.faces.size());
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const auto uses = edges.of(e);
+        const Vec3 along = mesh::edge_vector(mesh, uses[0]);
+        struct Spoke {
+            mesh::EdgeUse use;
+            double angle;
+            Vec3 image;  // of the edge's vertex a in this face
+        };
+        std::vector<Spoke> spokes;
+        Vec3 x;
+        for (const mesh::EdgeUse& use : uses) {
+            const std::size_t a = (use.opposite + (use.forward ? 1U : 2U)) % 3;
+            const Vec3 start = mesh.corner(use.face, a);
+            Vec3 out = mesh.corner(use.face, use.opposite) - start;
+            out -= (dot(out, along) / squared_norm(along)) * along;
+            if (spokes.empty()) x = out;
+            const double angle = spokes.empty() ? 0.0 : std::atan2(dot(cross(x, out), along) / norm(along), dot(x, out));
+            spokes.push_back({use, angle, start - mesh.position[mesh.faces[use.face].vertices[a]]});
+        }
+        std::sort(spokes.begin(), spokes.end(), [](const Spoke& p, const Spoke& q) { return p.angle < q.angle; });
+        for (std::size_t k = 0; k < spokes.size(); ++k) {
+            const Spoke& p = spokes[k];
+            const Spoke& q = spokes[(k + 1) % spokes.size()];
+            const std::size_t low = side_of(p.use, true), high = side_of(q.use, false);
+            found[low].push_back({high, p.image - q.image});
+            found[high].push_back({low, q.image - p.image});
+        }
+    }
+    return found;
+}
+
+}  // namespace
+
 RegionShifts region_shifts(const mesh::FoamMesh& mesh, const mesh::EdgeFaces& edges) {
     RegionShifts shifts;
     if (!mesh.periodic()) return shifts;
-    // Sides of faces: 2 f behind, 2 f + 1 in front. Two sides of one region that share an edge lie next to each other in
-    // space once each is moved so that the edge's vertex a is the same image.
-    const std::size_t sides = 2 * mesh.faces.size();
-    std::vector<std::vector<std::size_t>> edges_of(mesh.faces.size());
-    for (std::size_t e = 0; e < edges.size(); ++e)
-        for (const mesh::EdgeUse& use : edges.of(e)) edges_of[index(use.face)].push_back(e);
-    const auto region = [&](std::size_t side) {
-        const mesh::Face& face = mesh.faces[static_cast<mesh::FaceId>(side / 2)];
-        return side % 2 == 0 ? face.back : face.front;
-    };
-    const auto image_of_a = [&](const mesh::EdgeUse& use) {
-        const std::size_t k = (use.opposite + (use.forward ? 1U : 2U)) % 3;
-        return mesh.corner(use.face, k) - mesh.position[mesh.faces[use.face].vertices[k]];
-    };
-    std::vector<Vec3> shift(sides);
-    std::vector<std::uint8_t> known(sides, 0);
-    for (std::size_t seed = 0; seed < sides; ++seed) {
+    const std::vector<std::vector<Contact>> neighbors = contacts(mesh, edges);
+    std::vector<Vec3> shift(neighbors.size());
+    std::vector<std::uint8_t> known(neighbors.size(), 0);
+    for (std::size_t seed = 0; seed < neighbors.size(); ++seed) {
         if (known[seed] != 0) continue;
         known[seed] = 1;
         std::vector<std::size_t> queue{seed};
         while (!queue.empty()) {
             const std::size_t side = queue.back();
             queue.pop_back();
-            const auto face = static_cast<mesh::FaceId>(side / 2);
-            for (const std::size_t e : edges_of[index(face)]) {
-                const auto uses = edges.of(e);
-                const auto own = std::find_if(uses.begin(), uses.end(), [&](const auto& u) { return u.face == face; });
-                for (const mesh::EdgeUse& use : uses)
-                    for (const std::size_t other : {2 * index(use.face), 2 * index(use.face) + 1}) {
-                        if (known[other] != 0 || region(other) != region(side)) continue;
-                        known[other] = 1;
-                        shift[other] = shift[side] + image_of_a(*own) - image_of_a(use);
-                        queue.push_back(other);
-                    }
+            for (const Contact& contact : neighbors[side]) {
+                if (known[contact.side] != 0) continue;
+                known[contact.side] = 1;
+                shift[contact.side] = shift[side] + contact.step;
+                queue.push_back(contact.side);
             }
         }
     }
-    for (std::size_t side = 0; side < sides; side += 2) {
+    for (std::size_t side = 0; side < shift.size(); side += 2) {
         shifts.back.push_back(shift[side]);
         shifts.front.push_back(shift[side + 1]);
     }
