@@ -19,6 +19,7 @@ struct TrackerOptions {
     double irregular_edge = 0.25;      ///< only edges shorter than this collapse onto other triple lines (then: T1)
     double kept_irregular_edge = 0.1;  ///< below this the crossing is kept even when it cannot be separated yet
     double separation = 0.15;          ///< how far each copy of a separated vertex moves
+    double separation_cost = 0.0;      ///< area that a separation may add [h^2]: leaves crossings that balance
     double merge_distance = 0.15;      ///< films this close that face each other become one
     double longest_step = 0.15;        ///< no vertex moves farther in one `move`
     double least_volume = 0.5;         ///< smaller regions are absorbed by a neighbor [h^3]

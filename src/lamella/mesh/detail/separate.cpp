@@ -132,7 +132,8 @@ void crossings(const Workbench& bench, VertexId v, const Sectors& sectors, std::
             const auto open = gaps(mesh, v, parting);
             if (!open) continue;
             parting.gain = area_apart(mesh, v, parting, {}, 0.0) - area_apart(mesh, v, parting, *open, trial);
-            if (parting.gain > 0.0) partings.push_back(parting);
+            const double allowed_cost = bench.options.separation_cost * bench.length(1.0) * bench.length(1.0);
+            if (parting.gain > -allowed_cost) partings.push_back(parting);
         }
 }
 

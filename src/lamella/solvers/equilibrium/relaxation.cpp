@@ -1,7 +1,6 @@
 #include "lamella/solvers/equilibrium/relaxation.h"
 
 #include "lamella/core/error.h"
-#include "lamella/core/random.h"
 #include "lamella/mesh/edge_faces.h"
 #include "lamella/mesh/plateau_faults.h"
 #include "lamella/mesh/quality.h"
@@ -222,20 +221,19 @@ bool Relaxation::tracker_changes_topology() {
     return changed;
 }
 
-/// A crossing may balance: where parting gains nothing at first the tracker leaves it. Pushed off its place at random it
-/// is no longer in balance, and the tracker can choose. A crossing that survives a few pushes stays.
+/// A crossing may balance so that parting it gains nothing at first, as the cone in a cube does: the first of two steps
+/// of parting is allowed to cost a little area. A crossing that survives a few tries stays.
 bool Relaxation::leaves_crossing() {
-    constexpr int kMostPushes = 5;
-    if (!options_.separating || pushes_ >= kMostPushes) return false;
-    const auto faults = mesh::plateau_faults(mesh(), mesh::edge_faces(mesh()));
-    if (faults.none()) return false;
-    ++pushes_;
-    IdVector<VertexId, Vec3> push(mesh().position.size());
-    for (const VertexId v : faults.vertices)
-        push[v] = tracker_->options().longest_step * edge_length_ *
-                  unit_vector<3>(random_bits(0, RandomStream::kMeshJitter, static_cast<std::uint64_t>(steps_), index(v)));
-    tracker_->move(push);
-    tracker_->remesh();
+    constexpr int kMostTries = 3;
+    if (!options_.separating || crossing_tries_ >= kMostTries) return false;
+    if (mesh::plateau_faults(mesh(), mesh::edge_faces(mesh())).none()) return false;
+    ++crossing_tries_;
+    mesh::TrackerOptions generous = tracker_->options();
+    generous.separation_cost = 0.05;
+    mesh::Tracker parting(mesh(), generous);
+    parting.remesh();
+    for (const mesh::TopologyEvent& event : parting.take_events()) events_.push_back(event);
+    take(parting.mesh(), edge_length_);
     failed_settles_ = 2;  // let the flow take it from there
     return true;
 }
@@ -271,7 +269,7 @@ Relaxation::Relaxation(sim::StateReader& in, const RelaxationOptions& options) :
     steps_ = static_cast<int>(in.read_integer("relaxation/steps"));
     failed_settles_ = static_cast<int>(in.read_integer("relaxation/failed_settles"));
     slow_steps_ = static_cast<int>(in.read_integer("relaxation/slow_steps"));
-    pushes_ = static_cast<int>(in.read_integer("relaxation/pushes"));
+    crossing_tries_ = static_cast<int>(in.read_integer("relaxation/crossing_tries"));
 }
 
 void Relaxation::save(sim::StateWriter& out) const {
@@ -283,7 +281,7 @@ void Relaxation::save(sim::StateWriter& out) const {
     out.write_value("relaxation/steps", static_cast<std::int64_t>(steps_));
     out.write_value("relaxation/failed_settles", static_cast<std::int64_t>(failed_settles_));
     out.write_value("relaxation/slow_steps", static_cast<std::int64_t>(slow_steps_));
-    out.write_value("relaxation/pushes", static_cast<std::int64_t>(pushes_));
+    out.write_value("relaxation/crossing_tries", static_cast<std::int64_t>(crossing_tries_));
 }
 
 }  // namespace lamella::equilibrium

@@ -85,7 +85,7 @@ private:
     int steps_ = 0;
     int failed_settles_ = 0;
     int slow_steps_ = 0;
-    int pushes_ = 0;
+    int crossing_tries_ = 0;
     double best_residual_ = 1.0;
     std::vector<mesh::TopologyEvent> events_;
 };
