@@ -88,14 +88,7 @@ void Relaxation::take(FoamMesh mesh, double edge_length) {
 
 void Relaxation::restart(FoamMesh mesh, double edge_length) {
     take(std::move(mesh), edge_length);
-    leave_rest();
-}
-
-/// New conditions: everything may be tried again.
-void Relaxation::leave_rest() {
     stage_ = Stage::kFlow;
-    crossing_tries_ = 0;
-    edge_tries_done_ = false;
 }
 
 void Relaxation::advance() {
@@ -190,7 +183,7 @@ void Relaxation::settle() {
         tidy();
         return;
     }
-    if (tracker_changes_topology() || leaves_crossing() || leaves_pinned_edges()) return;
+    if (tracker_changes_topology() || leaves_crossing()) return;
     if (edge_length_ > 1.5 * options_.edge_length) {
         refine();
         return;
@@ -245,37 +238,6 @@ bool Relaxation::leaves_crossing() {
     return true;
 }
 
-/// A triple line that ought to vanish in a T1 can come to rest at the length of one edge: the mesh pins it. So all short
-/// lines are closed at once, what comes of that relaxes, and the smaller area stays.
-bool Relaxation::leaves_pinned_edges() {
-    if (!options_.separating || edge_tries_done_) return false;
-    edge_tries_done_ = true;
-    mesh::TrackerOptions closing = tracker_->options();
-    closing.shortest_edge = closing.irregular_edge = 1.0;
-    mesh::Tracker closed(mesh(), closing);
-    closed.remesh();
-    std::vector<mesh::TopologyEvent> events = closed.take_events();
-    if (events.empty()) return false;
-
-    RelaxationOptions options = options_;
-    options.edge_length = edge_length_;
-    Relaxation trial(closed.mesh(), options);
-    trial.take(closed.mesh(), edge_length_);  // on this mesh, not on a coarser one
-    trial.edge_tries_done_ = true;
-    constexpr int kMostSteps = 200;
-    while (!trial.at_rest() && trial.steps() < kMostSteps) trial.advance();
-    constexpr double kGain = 1e-6;  // of the area: less is the difference of two meshes
-    if (!trial.at_rest() || weighted_area(trial.mesh()) > (1.0 - kGain) * weighted_area(mesh())) return false;
-    const std::vector<mesh::TopologyEvent> later = trial.take_events();
-    events.insert(events.end(), later.begin(), later.end());
-    events_.insert(events_.end(), events.begin(), events.end());
-    take(trial.mesh(), edge_length_);
-    edge_tries_done_ = false;  // there may be more
-    return true;
-}
-
-double Relaxation::weighted_area(const FoamMesh& mesh) const { return flat_system(mesh, options_).balance(false).area; }
-
 void Relaxation::refine() {
     const mesh::EdgeFaces edges = mesh::edge_faces(mesh());
     take(mesh::subdivide(mesh(), edges, mesh::edge_middles(mesh(), edges)), 0.5 * edge_length_);
@@ -287,13 +249,13 @@ void Relaxation::pop(mesh::RegionId region, mesh::RegionId into) {
     if (!tracker_) throw InputError("films whose mesh stays as it is (periodic, or stationary) cannot burst");
     tracker_->pop(region, into);
     for (const mesh::TopologyEvent& event : tracker_->take_events()) events_.push_back(event);
-    leave_rest();
+    stage_ = Stage::kFlow;
 }
 
 void Relaxation::set_target_volume(mesh::RegionId region, double volume) {
     if (tracker_) tracker_->set_target_volume(region, volume);
     else frozen_.regions[region].target_volume = volume;
-    leave_rest();
+    stage_ = Stage::kFlow;
 }
 
 Relaxation::Relaxation(sim::StateReader& in, const RelaxationOptions& options) : options_(options) {
@@ -308,7 +270,6 @@ Relaxation::Relaxation(sim::StateReader& in, const RelaxationOptions& options) :
     failed_settles_ = static_cast<int>(in.read_integer("relaxation/failed_settles"));
     slow_steps_ = static_cast<int>(in.read_integer("relaxation/slow_steps"));
     crossing_tries_ = static_cast<int>(in.read_integer("relaxation/crossing_tries"));
-    edge_tries_done_ = in.read_integer("relaxation/edge_tries_done") != 0;
 }
 
 void Relaxation::save(sim::StateWriter& out) const {
@@ -321,7 +282,6 @@ void Relaxation::save(sim::StateWriter& out) const {
     out.write_value("relaxation/failed_settles", static_cast<std::int64_t>(failed_settles_));
     out.write_value("relaxation/slow_steps", static_cast<std::int64_t>(slow_steps_));
     out.write_value("relaxation/crossing_tries", static_cast<std::int64_t>(crossing_tries_));
-    out.write_value("relaxation/edge_tries_done", static_cast<std::int64_t>(edge_tries_done_ ? 1 : 0));
 }
 
 }  // namespace lamella::equilibrium

@@ -71,9 +71,6 @@ private:
     void keep_pressures(const RestSystem& system, const Newton& newton);
     bool tracker_changes_topology();
     bool leaves_crossing();
-    bool leaves_pinned_edges();
-    double weighted_area(const mesh::FoamMesh& mesh) const;
-    void leave_rest();
     void refine();
     double flow_time() const;
     void measure();
@@ -89,7 +86,6 @@ private:
     int failed_settles_ = 0;
     int slow_steps_ = 0;
     int crossing_tries_ = 0;
-    bool edge_tries_done_ = false;
     double best_residual_ = 1.0;
     std::vector<mesh::TopologyEvent> events_;
 };
