@@ -70,6 +70,7 @@ RestSystem flat_system(const FoamMesh& mesh, const RelaxationOptions& options) {
 
 Relaxation::Relaxation(FoamMesh mesh, const RelaxationOptions& options) : options_(options) {
     const double coarse = options.edge_length * std::ldexp(1.0, coarse_levels(mesh, options));
+    for (const mesh::Region& r : mesh.regions) gas_.push_back(r.kind == RegionKind::kClosed ? r.target_volume : 0.0);
     take(std::move(mesh), coarse);
 }
 
@@ -87,6 +88,8 @@ void Relaxation::take(FoamMesh mesh, double edge_length) {
 }
 
 void Relaxation::restart(FoamMesh mesh, double edge_length) {
+    gas_.clear();
+    for (const mesh::Region& r : mesh.regions) gas_.push_back(r.kind == RegionKind::kClosed ? r.target_volume : 0.0);
     take(std::move(mesh), edge_length);
     stage_ = Stage::kFlow;
 }
@@ -110,7 +113,31 @@ void Relaxation::advance() {
         slow_steps_ = 0;
         best_residual_ = 1.0;
     }
-    for (const mesh::TopologyEvent& event : tracker_->take_events()) events_.push_back(event);
+    heed(tracker_->take_events());
+}
+
+/// Air of the outside that the films happen to lock in between bubbles belongs to nobody: when such a cavity is too small
+/// to be seen and goes to a bubble, that bubble keeps the volume it was given. Gas of bubbles is never lost.
+void Relaxation::heed(const std::vector<mesh::TopologyEvent>& events) {
+    using Kind = mesh::TopologyEvent::Kind;
+    gas_.resize(mesh().regions.size(), 0.0);
+    for (const mesh::TopologyEvent& event : events) {
+        events_.push_back(event);
+        const bool own_gas = event.a != mesh::kOutside && gas_[event.a] > 0.0;
+        if (event.kind == Kind::kSplit && own_gas) {
+            gas_[event.a] = mesh().regions[event.a].target_volume;
+            gas_[event.b] = mesh().regions[event.b].target_volume;
+        } else if (event.kind == Kind::kPop) {
+            gas_[event.a] = 0.0;
+            gas_[event.b] = mesh().regions[event.b].target_volume;
+        } else if (event.kind == Kind::kAbsorb) {
+            if (gas_[event.b] > 0.0) {
+                gas_[event.b] += gas_[event.a];
+                tracker_->set_target_volume(event.b, gas_[event.b]);
+            }
+            gas_[event.a] = 0.0;
+        }
+    }
 }
 
 void Relaxation::measure() {
@@ -216,7 +243,7 @@ bool Relaxation::tracker_changes_topology() {
     tracker_->remesh();
     const std::vector<mesh::TopologyEvent> fresh = tracker_->take_events();
     const bool changed = !fresh.empty();
-    events_.insert(events_.end(), fresh.begin(), fresh.end());
+    heed(fresh);
     if (!changed) take(std::move(rested), edge_length_);
     return changed;
 }
@@ -232,8 +259,9 @@ bool Relaxation::leaves_crossing() {
     generous.separation_cost = 0.05;
     mesh::Tracker parting(mesh(), generous);
     parting.remesh();
-    for (const mesh::TopologyEvent& event : parting.take_events()) events_.push_back(event);
+    const std::vector<mesh::TopologyEvent> events = parting.take_events();
     take(parting.mesh(), edge_length_);
+    heed(events);
     failed_settles_ = 2;  // let the flow take it from there
     return true;
 }
@@ -248,13 +276,14 @@ std::vector<mesh::TopologyEvent> Relaxation::take_events() { return std::exchang
 void Relaxation::pop(mesh::RegionId region, mesh::RegionId into) {
     if (!tracker_) throw InputError("films whose mesh stays as it is (periodic, or stationary) cannot burst");
     tracker_->pop(region, into);
-    for (const mesh::TopologyEvent& event : tracker_->take_events()) events_.push_back(event);
+    heed(tracker_->take_events());
     stage_ = Stage::kFlow;
 }
 
 void Relaxation::set_target_volume(mesh::RegionId region, double volume) {
     if (tracker_) tracker_->set_target_volume(region, volume);
     else frozen_.regions[region].target_volume = volume;
+    gas_[region] = volume;
     stage_ = Stage::kFlow;
 }
 
@@ -269,6 +298,7 @@ Relaxation::Relaxation(sim::StateReader& in, const RelaxationOptions& options) :
     steps_ = static_cast<int>(in.read_integer("relaxation/steps"));
     failed_settles_ = static_cast<int>(in.read_integer("relaxation/failed_settles"));
     slow_steps_ = static_cast<int>(in.read_integer("relaxation/slow_steps"));
+    in.read("relaxation/gas", mesh().regions.size(), gas_.values());
     crossing_tries_ = static_cast<int>(in.read_integer("relaxation/crossing_tries"));
 }
 
@@ -281,6 +311,7 @@ void Relaxation::save(sim::StateWriter& out) const {
     out.write_value("relaxation/steps", static_cast<std::int64_t>(steps_));
     out.write_value("relaxation/failed_settles", static_cast<std::int64_t>(failed_settles_));
     out.write_value("relaxation/slow_steps", static_cast<std::int64_t>(slow_steps_));
+    out.write("relaxation/gas", std::span<const double>(gas_.values()));
     out.write_value("relaxation/crossing_tries", static_cast<std::int64_t>(crossing_tries_));
 }
 

@@ -70,6 +70,7 @@ private:
     void settle_frozen();
     void keep_pressures(const RestSystem& system, const Newton& newton);
     bool tracker_changes_topology();
+    void heed(const std::vector<mesh::TopologyEvent>& events);
     bool leaves_crossing();
     void refine();
     double flow_time() const;
@@ -86,6 +87,7 @@ private:
     int failed_settles_ = 0;
     int slow_steps_ = 0;
     int crossing_tries_ = 0;
+    IdVector<mesh::RegionId, double> gas_;  ///< that each bubble was given [m^3]; 0 for cavities and open regions
     double best_residual_ = 1.0;
     std::vector<mesh::TopologyEvent> events_;
 };
