@@ -176,8 +176,10 @@ void Loop::advance(double limit) {
     record_.evaluations += report.evaluations;
     collect_events();
 
-    constexpr int kMostIdleSteps = 1000;  // a few are a solver's right (an event takes no time), more are a dead end
-    idle_steps_ = solver_->time() > before ? 0 : idle_steps_ + 1;
+    // A few are a solver's right (an event takes no time), more are a dead end, unless it says that it is at work: a search
+    // for a rest bounds its own steps.
+    constexpr int kMostIdleSteps = 1000;
+    idle_steps_ = solver_->time() > before || report.iterations > 0 ? 0 : idle_steps_ + 1;
     if (idle_steps_ > kMostIdleSteps)
         throw NumericalError(fmt::format("time stands still: {} steps in a row advanced by nothing", idle_steps_));
 }

@@ -69,7 +69,7 @@ sim::StepReport EquilibriumSolver::advance(double time_limit) {
     }
     if (annealing()) {
         anneal();
-        return {};
+        return {.iterations = 1};
     }
     const auto& events = input_.films->events;
     time_ = next_event_ < events.size() ? std::min(time_limit, std::max(time_, events[next_event_].time)) : time_limit;
@@ -80,6 +80,8 @@ sim::StepReport EquilibriumSolver::advance(double time_limit) {
 
 void EquilibriumSolver::relax() {
     if (!relaxation_->at_rest()) {
+        constexpr int kLongestRound = 150;  // shaken too hard: not worth more steps
+        if (annealing() && !best_mesh_.faces.empty() && steps_to_rest_ > kLongestRound) return give_up_round();
         if (++steps_to_rest_ > options_.max_steps)
             throw NumericalError(fmt::format(
                 "the films did not come to rest in {} steps (residual {:.2g}); raise equilibrium.max_steps, or make "
@@ -122,6 +124,14 @@ void EquilibriumSolver::anneal() {
     } else {
         relaxation_->restart(best_mesh_, best_edge_);
     }
+    if (annealing()) shake_volumes();
+}
+
+void EquilibriumSolver::give_up_round() {
+    ++anneal_round_;
+    steps_to_rest_ = 0;
+    relaxation_->restart(best_mesh_, best_edge_);
+    anneal_ = Anneal::kRest;
     if (annealing()) shake_volumes();
 }
 

@@ -48,6 +48,7 @@ private:
     bool annealing() const { return anneal_round_ < options_.anneal_rounds; }
     void anneal();
     void shake_volumes();
+    void give_up_round();
 
     Options options_;
     sim::SolverInput input_;

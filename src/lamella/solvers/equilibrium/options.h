@@ -16,7 +16,7 @@ struct Options {
     bool separating = true;
     bool eigenvalue = true;
     int anneal_rounds = 0;
-    double anneal_strength = 0.5;
+    double anneal_strength = 0.8;
 
     template <class Visitor>
     void visit(Visitor&& option) {
@@ -29,7 +29,7 @@ struct Options {
                {"bubbles come to rest on about so many faces first, then on finer meshes"});
         option("flow_step", flow_step, sim::strictly_between(0.0, 10.0),
                {"pseudo time of a flow step, in squared radii of the smallest bubble"});
-        option("max_steps", max_steps, sim::between(1, 900), {"steps to one rest after which the run fails"});
+        option("max_steps", max_steps, sim::at_least(1), {"steps to one rest after which the run fails"});
         option("merging", merging, {"films that touch become one"});
         option("separating", separating, {"crossings that Plateau's laws forbid part; false keeps them"});
         option("eigenvalue", eigenvalue, {"report the lowest eigenvalue of the second variation"});
