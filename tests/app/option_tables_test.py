@@ -5,20 +5,24 @@ With --update DOCUMENT...: writes the tables instead of checking them.
 
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
-BEGIN, END = "<!-- options -->\n", "<!-- /options -->"
+# Between these lines; without a name the table is that of the document's own solver.
+TABLE = re.compile(r"(<!-- options(?: (\S+))? -->\n).*?(<!-- /options -->)", re.DOTALL)
 
 
 def with_table(document):
-    """The text of a document, its option table as `lamella explain` prints it now."""
+    """The text of a document, its option tables as `lamella explain` prints them now."""
+    def now(match):
+        topic = match.group(2) or document.stem
+        table = subprocess.run([os.environ["LAMELLA"], "explain", "--markdown", topic], capture_output=True,
+                               text=True, check=True).stdout
+        return match.group(1) + table + match.group(3)
+
     text = document.read_text(encoding="utf-8")
-    before, _, rest = text.partition(BEGIN)
-    _, _, after = rest.partition(END)
-    table = subprocess.run([os.environ["LAMELLA"], "explain", "--markdown", document.stem], capture_output=True,
-                           text=True, check=True).stdout
-    return text, before + BEGIN + table + END + after
+    return text, TABLE.sub(now, text)
 
 
 def main(arguments):
