@@ -40,6 +40,13 @@ void write_extended_xyz(std::ostream& out, const sim::Frame& frame);
 /// Surface and points share one list as in write_vtp. Integer fields beyond 32 bit become doubles (PLY has no more).
 void write_ply(std::ostream& out, const sim::Frame& frame);
 
+/// Wavefront OBJ of the films alone: a group film_B_F for the films with region B behind and F in front.
+void write_obj(std::ostream& out, const sim::Frame& frame);
+
+/// Surface Evolver datafile of the films alone: vertices and edges on wires are fixed, every region that films close in
+/// is a body with its volume, the tension is 1. @throws InputError  also for a foam in a periodic box
+void write_surface_evolver(std::ostream& out, const sim::Frame& frame);
+
 /// A table with one row per point: x, y, z, radius, then every field; header names carry units: "velocity_x[m/s]".
 void write_points_csv(std::ostream& out, const sim::Frame& frame);
 

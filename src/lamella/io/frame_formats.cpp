@@ -5,6 +5,8 @@ namespace lamella::io {
 const std::vector<FrameFormat>& frame_formats() {
     static const std::vector<FrameFormat> formats{
         {"ply", ".ply", "surfaces and points with their fields, binary: Blender, MeshLab, Houdini", write_ply},
+        {"obj", ".obj", "films, a group for each pair of regions, Wavefront OBJ: any 3D program", write_obj},
+        {"fe", ".fe", "films with their volumes and wires: Surface Evolver", write_surface_evolver},
         {"xyz", ".xyz", "points with box and fields, extended XYZ text: OVITO, ASE", write_extended_xyz},
         {"csv", ".csv", "a table with one row per point: spreadsheets, pandas, gnuplot", write_points_csv},
     };
