@@ -1,5 +1,6 @@
 #include "lamella/core/error.h"
 #include "lamella/io/detail/frame_table.h"
+#include "lamella/io/detail/text_rows.h"
 #include "lamella/io/frame_files.h"
 
 #include <fmt/format.h>
@@ -28,6 +29,7 @@ void write_obj(std::ostream& stream, const sim::Frame& frame) {
         for (const std::size_t f : faces)
             fmt::format_to(out, "f {} {} {}\n", s.triangles[f][0] + 1, s.triangles[f][1] + 1, s.triangles[f][2] + 1);
     }
+    detail::finish(stream);
 }
 
 }  // namespace lamella::io

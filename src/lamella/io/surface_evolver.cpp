@@ -1,5 +1,6 @@
 #include "lamella/core/error.h"
 #include "lamella/io/detail/frame_table.h"
+#include "lamella/io/detail/text_rows.h"
 #include "lamella/io/frame_files.h"
 
 #include <fmt/format.h>
@@ -96,8 +97,7 @@ void write_surface_evolver(std::ostream& stream, const sim::Frame& frame) {
         fmt::format_to(out, "\n");
     }
     const std::set<std::int32_t> closed = closed_regions(s);
-    if (closed.empty()) return;
-    fmt::format_to(out, "\nbodies\n");
+    if (!closed.empty()) fmt::format_to(out, "\nbodies\n");
     for (const std::int32_t region : closed) {  // normals point out of the region behind a face
         fmt::format_to(out, "{}", region);
         std::size_t on_line = 0;
@@ -107,6 +107,7 @@ void write_surface_evolver(std::ostream& stream, const sim::Frame& frame) {
                     fmt::format_to(out, "{}{}{}", ++on_line % 16 == 0 ? " \\\n " : " ", side == 0 ? "" : "-", f + 1);
         fmt::format_to(out, " volume {:.17g}\n", volume_of(s, region));
     }
+    detail::finish(stream);
 }
 
 }  // namespace lamella::io
