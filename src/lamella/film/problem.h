@@ -1,9 +1,10 @@
 #pragma once
 
-#include <string>
+#include <cstdint>
 #include <vector>
 
 #include "lamella/core/vec.h"
+#include "lamella/film/wire.h"
 #include "lamella/mesh/foam_mesh.h"
 
 namespace lamella::film {
@@ -26,6 +27,8 @@ struct FilmTension {
 
 /// The region that shares most film with the one in question.
 inline constexpr mesh::RegionId kLargestNeighbor{0xffffffffU};
+/// A bubble drawn at random among those that touch the outside then.
+inline constexpr mesh::RegionId kRandomBubble{0xfffffffeU};
 
 /// A change of the regions at a time: [[event]] of a scene.
 struct Event {
@@ -35,6 +38,7 @@ struct Event {
     mesh::RegionId region = mesh::kOutside;     ///< which bubble
     mesh::RegionId into = kLargestNeighbor;     ///< pop: the region it joins
     double volume = 0.0;                        ///< inflate: its new volume [m^3]
+    double duration = 0.0;                      ///< inflate: how long it takes, for the solvers that move [s]
 };
 
 /// What every film solver starts from, whatever its method: scene tables [material], [[bubble]], [[film]], [[wire]],
@@ -44,6 +48,9 @@ struct Problem {
     mesh::FoamMesh mesh;        ///< the films at the start
     double edge_length = 0.0;   ///< wanted length of an edge [m]
     std::vector<FilmTension> tensions;
+    std::vector<Wire> wires;                               ///< those that move
+    IdVector<mesh::VertexId, std::int32_t> wire_of;        ///< which of them holds a vertex; -1: none, or it is at rest
+    IdVector<mesh::RegionId, Vec3> velocity;               ///< of each bubble at the start [m/s]
     std::vector<Event> events;  ///< in order of time
 };
 

@@ -104,7 +104,7 @@ double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cros
 
 std::vector<TripleEdgeAngles> triple_edge_angles(const FoamMesh& mesh, AngleMethod method) {
     const EdgeFaces edges = edge_faces(mesh);
-    const detail::VertexCorners corners = detail::vertex_corners(mesh);
+    const VertexCorners corners = vertex_corners(mesh);
     std::vector<TripleEdgeAngles> result;
     for (std::size_t e = 0; e < edges.size(); ++e) {
         const auto regions = triple_regions(mesh, edges, e);

@@ -1,7 +1,7 @@
 #include "lamella/mesh/cotan_laplacian.h"
 
 #include "lamella/mesh/detail/triangle.h"
-#include "lamella/mesh/detail/vertex_corners.h"
+#include "lamella/mesh/vertex_corners.h"
 
 #include <algorithm>
 
@@ -9,16 +9,16 @@ namespace lamella::mesh {
 namespace {
 
 /// The vertices that share a face with v, and v itself, in order; empty if v has no face.
-void neighbors(const FoamMesh& mesh, std::span<const detail::Corner> corners, std::vector<VertexId>& row) {
+void neighbors(const FoamMesh& mesh, std::span<const Corner> corners, std::vector<VertexId>& row) {
     row.clear();
-    for (const detail::Corner& corner : corners)
+    for (const Corner& corner : corners)
         for (const VertexId v : mesh.faces[corner.face].vertices) row.push_back(v);
     std::ranges::sort(row);
     row.erase(std::ranges::unique(row).begin(), row.end());
 }
 
 VertexMatrix zero_matrix(const FoamMesh& mesh) {
-    const detail::VertexCorners corners = detail::vertex_corners(mesh);
+    const VertexCorners corners = vertex_corners(mesh);
     VertexMatrix matrix;
     matrix.start.reserve(mesh.position.size() + 1);
     matrix.start.push_back(0);

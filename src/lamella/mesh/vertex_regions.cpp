@@ -1,20 +1,20 @@
 #include "lamella/mesh/vertex_regions.h"
 
-#include "lamella/mesh/detail/vertex_corners.h"
+#include "lamella/mesh/vertex_corners.h"
 
 #include <algorithm>
 
 namespace lamella::mesh {
 
 VertexRegions vertex_regions(const FoamMesh& mesh, WhichRegions which) {
-    const detail::VertexCorners corners = detail::vertex_corners(mesh);
+    const VertexCorners corners = vertex_corners(mesh);
     VertexRegions regions;
     regions.start.reserve(mesh.position.size() + 1);
     regions.start.push_back(0);
     std::vector<RegionId> row;
     for (const VertexId v : mesh.position.ids()) {
         row.clear();
-        for (const detail::Corner& corner : corners.of(v))
+        for (const Corner& corner : corners.of(v))
             for (const RegionId r : {mesh.faces[corner.face].back, mesh.faces[corner.face].front})
                 if (which == WhichRegions::kAll || mesh.regions[r].kind == RegionKind::kClosed) row.push_back(r);
         std::ranges::sort(row);

@@ -158,32 +158,100 @@ double default_edge_length(const FilmTables& tables, const std::vector<mesh::Bal
     return edge;
 }
 
+film::Event event_of(const EventTable& event, const FoamMesh& mesh, const SourceLocation& where) {
+    const auto kind_of = [&](int region) {
+        const bool there = region >= 0 && static_cast<std::size_t>(region) < mesh.regions.size();
+        return there ? mesh.regions[static_cast<mesh::RegionId>(region)].kind : RegionKind::kGone;
+    };
+    const bool random = event.region == 0 && event.kind == film::Event::Kind::kPop;
+    if (!random && kind_of(event.region) != RegionKind::kClosed)
+        throw InputError(where, fmt::format("event.region = {} is no bubble; there are {} regions beside the outside",
+                                            event.region, mesh.regions.size() - 1));
+    if (event.into >= 0 && (kind_of(event.into) == RegionKind::kGone || (!random && event.into == event.region)))
+        throw InputError(where, fmt::format("event.into = {} is no region that bubble {} could join", event.into,
+                                            event.region));
+    if (event.repeat > 1 && !(event.interval > 0.0))
+        throw InputError(where, "event.interval = 0 puts all repetitions at one time; say how far apart they are");
+    const auto region = random ? film::kRandomBubble : static_cast<mesh::RegionId>(event.region);
+    const double first = random ? 0.0 : mesh.regions[region].target_volume;
+    return {.kind = event.kind,
+            .time = event.time,
+            .region = region,
+            .into = event.into < 0 ? film::kLargestNeighbor : static_cast<mesh::RegionId>(event.into),
+            .volume = event.volume > 0.0 ? event.volume : event.factor * first,
+            .duration = event.duration};
+}
+
 std::vector<film::Event> events_of(const FilmTables& tables, const FoamMesh& mesh, const sim::Node& root) {
     std::vector<film::Event> events;
     for (std::size_t k = 0; k < tables.events.size(); ++k) {
-        const EventTable& event = tables.events[k];
-        const auto bubble = [&](int region) {
-            const bool there = region >= 0 && static_cast<std::size_t>(region) < mesh.regions.size();
-            return there ? mesh.regions[static_cast<mesh::RegionId>(region)].kind : RegionKind::kGone;
-        };
-        if (bubble(event.region) != RegionKind::kClosed)
-            throw InputError(place(root, "event", k),
-                             fmt::format("event.region = {} is no bubble; there are {} regions beside the outside",
-                                         event.region, mesh.regions.size() - 1));
-        if (event.into >= 0 && (bubble(event.into) == RegionKind::kGone || event.into == event.region))
-            throw InputError(place(root, "event", k),
-                             fmt::format("event.into = {} is no region that bubble {} could join", event.into,
-                                         event.region));
-        const auto region = static_cast<mesh::RegionId>(event.region);
-        const double volume = event.volume > 0.0 ? event.volume : event.factor * mesh.regions[region].target_volume;
-        events.push_back({.kind = event.kind,
-                          .time = event.time,
-                          .region = region,
-                          .into = event.into < 0 ? film::kLargestNeighbor : static_cast<mesh::RegionId>(event.into),
-                          .volume = volume});
+        film::Event event = event_of(tables.events[k], mesh, place(root, "event", k));
+        for (int n = 0; n < tables.events[k].repeat; ++n) {
+            event.time = tables.events[k].time + n * tables.events[k].interval;
+            events.push_back(event);
+        }
     }
     std::stable_sort(events.begin(), events.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
     return events;
+}
+
+/// The point of a wire that is nearest to `x` [m].
+Vec3 nearest_on(const WireTable& wire, const Vec3& x) {
+    if (wire.shape == WireShape::kSegment) {
+        const Vec3 along = wire.to - wire.from;
+        const double s = std::clamp(dot(x - wire.from, along) / squared_norm(along), 0.0, 1.0);
+        return wire.from + s * along;
+    }
+    const Vec3 axis = wire.axis / norm(wire.axis);
+    Vec3 arm = x - wire.center;
+    arm -= dot(arm, axis) * axis;
+    const double length = norm(arm);
+    return length > 0.0 ? wire.center + (wire.radius / length) * arm : wire.center + Vec3{{1e300, 0.0, 0.0}};
+}
+
+film::Wire motion_of(const WireTable& wire) {
+    film::Wire motion;
+    motion.center = wire.shape == WireShape::kRing ? wire.center : 0.5 * (wire.from + wire.to);
+    motion.velocity = wire.velocity;
+    motion.spin = wire.spin;
+    motion.start = wire.start;
+    if (wire.end > 0.0) motion.end = wire.end;
+    if (wire.shape == WireShape::kRing) motion.ring = film::Wire::Ring{wire.axis / norm(wire.axis), wire.radius, wire.blow};
+    return motion;
+}
+
+/// Puts the films near a wire onto it, and notes which wire holds which vertex.
+void attach(film::Problem& problem, const WireTable& wire, const SourceLocation& where) {
+    if (wire.shape == WireShape::kRing && norm(wire.axis) == 0.0)
+        throw InputError(where, "wire.axis = [0, 0, 0] is no direction");
+    if (wire.shape == WireShape::kSegment && squared_norm(wire.to - wire.from) == 0.0)
+        throw InputError(where, "wire.from and wire.to are the same point");
+    if (wire.end > 0.0 && wire.end < wire.start)
+        throw InputError(where, fmt::format("wire.end = {} comes before wire.start = {}", wire.end, wire.start));
+    if (wire.blow != 0.0 && wire.shape != WireShape::kRing)
+        throw InputError(where, "wire.blow needs shape = \"ring\": air is blown through a ring");
+    const double reach = wire.reach > 0.0 ? wire.reach : 0.5 * problem.edge_length;
+    const auto number = static_cast<std::int32_t>(problem.wires.size());
+    problem.wires.push_back(motion_of(wire));
+    std::size_t held = 0;
+    for (const mesh::VertexId v : problem.mesh.position.ids()) {
+        const Vec3 on_wire = nearest_on(wire, problem.mesh.position[v]);
+        if (norm(on_wire - problem.mesh.position[v]) > reach) continue;
+        if (problem.mesh.on_wire[v] == 0) problem.mesh.position[v] = on_wire;
+        problem.mesh.on_wire[v] = 1;
+        problem.wire_of[v] = number;
+        ++held;
+    }
+    if (held == 0 && wire.blow == 0.0)
+        throw InputError(where, fmt::format("no film is within {:.3g} m of the wire; move it, or raise wire.reach", reach));
+}
+
+/// The velocity that the scene gives to each of its bubbles; films and foams have none.
+IdVector<mesh::RegionId, Vec3> start_velocities(const FilmTables& tables, const FoamMesh& mesh) {
+    IdVector<mesh::RegionId, Vec3> velocity(mesh.regions.size());
+    for (std::size_t k = 0; k < tables.bubbles.size(); ++k)  // bubbles are joined first: k is region k + 1
+        velocity[static_cast<mesh::RegionId>(k + 1)] = tables.bubbles[k].velocity;
+    return velocity;
 }
 
 template <class Table>
@@ -207,6 +275,7 @@ std::vector<FilmTableInfo> film_table_infos() {
             info_of<FilmTable>("film", "one film or cluster of a known shape: [[film]]", true),
             info_of<FoamTable>("foam", "a cluster of bubbles in random places", false),
             info_of<TensionTable>("tension", "films that are tenser than others: [[tension]]", true),
+            info_of<WireTable>("wire", "a wire that holds films, at rest or moving: [[wire]]", true),
             info_of<EventTable>("event", "what happens to bubbles on the way: [[event]]", true)};
 }
 
@@ -217,6 +286,7 @@ FilmTables read_film_tables(const sim::Node& root) {
                       .films = read_list<FilmTable>(root, "film"),
                       .foams = {},
                       .tensions = read_list<TensionTable>(root, "tension"),
+                      .wires = read_list<WireTable>(root, "wire"),
                       .events = read_list<EventTable>(root, "event")};
     if (root.find("foam") != nullptr) tables.foams.push_back(read_one<FoamTable>(root, "foam"));
     return tables;
@@ -250,6 +320,9 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
     for (std::size_t k = 0; k < tables.films.size(); ++k)
         at_table(place(root, "film", k), "film", [&] { add(film_of(tables.films[k], h)); });
     if (!cluster.empty()) at_table(place(root, "foam", 0), "foam", [&] { add(bubbles_of(cluster, h)); });
+    problem.wire_of.assign(problem.mesh.position.size(), -1);
+    for (std::size_t k = 0; k < tables.wires.size(); ++k) attach(problem, tables.wires[k], place(root, "wire", k));
+    problem.velocity = start_velocities(tables, problem.mesh);
     mesh::require_sound(problem.mesh, root.where.file.empty() ? "the films" : root.where.file);
 
     for (std::size_t k = 0; k < tables.tensions.size(); ++k) {
@@ -272,6 +345,7 @@ std::string film_tables_toml(const FilmTables& tables, double edge_length) {
     for (const FilmTable& film : tables.films) text += toml_of("film", film, true);
     for (const FoamTable& foam : tables.foams) text += toml_of("foam", foam, false);
     for (const TensionTable& tension : tables.tensions) text += toml_of("tension", tension, true);
+    for (const WireTable& wire : tables.wires) text += toml_of("wire", wire, true);
     for (const EventTable& event : tables.events) text += toml_of("event", event, true);
     return text;
 }

@@ -146,14 +146,57 @@ struct TensionTable {
     }
 };
 
+enum class WireShape { kRing, kSegment };
+
+/// One [[wire]]
+struct WireTable {
+    WireShape shape = WireShape::kRing;
+    Vec3 center;
+    Vec3 axis{{0.0, 0.0, 1.0}};
+    double radius = 0.05;
+    Vec3 from{{-0.05, 0.0, 0.0}};
+    Vec3 to{{0.05, 0.0, 0.0}};
+    double reach = 0.0;
+    Vec3 velocity;
+    Vec3 spin;
+    double start = 0.0;
+    double end = 0.0;
+    double blow = 0.0;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("shape", shape,
+               sim::choices<WireShape>({{"ring", WireShape::kRing}, {"segment", WireShape::kSegment}}),
+               {"ring: around center; segment: from one point to another. Several make a polyline or a frame"});
+        option("center", center, sim::any_number(), {"of a ring", "length"});
+        option("axis", axis, sim::any_number(), {"of a ring"});
+        option("radius", radius, sim::more_than(0.0), {"of a ring", "length"});
+        option("from", from, sim::any_number(), {"first end of a segment", "length"});
+        option("to", to, sim::any_number(), {"second end of a segment", "length"});
+        option("reach", reach, sim::at_least(0.0),
+               {"films this close to the wire are held by it; 0: half an edge", "length"});
+        option("velocity", velocity, sim::any_number(), {"of the wire", "length/time"});
+        option("spin", spin, sim::any_number(),
+               {"angular velocity, about the center of a ring or the middle of a segment", "1/time"});
+        option("start", start, sim::at_least(0.0), {"when it begins to move and to blow", "time"});
+        option("end", end, sim::at_least(0.0), {"when it stops; 0: never", "time"});
+        option("blow", blow, sim::any_number(),
+               {"air is blown through a ring along its axis: growth of the circulation around the wire",
+                "length^2/time^2"});
+    }
+};
+
 /// One [[event]]
 struct EventTable {
     double time = 0.0;
+    int repeat = 1;
+    double interval = 0.0;
     film::Event::Kind kind = film::Event::Kind::kPop;
     int region = 1;
     int into = -1;
     double volume = 0.0;
     double factor = 1.0;
+    double duration = 0.0;
 
     template <class Visitor>
     void visit(Visitor&& option) {
@@ -162,11 +205,15 @@ struct EventTable {
                sim::choices<film::Event::Kind>(
                    {{"pop", film::Event::Kind::kPop}, {"inflate", film::Event::Kind::kInflate}}),
                {"pop: the film to another region bursts; inflate: a bubble gets another volume"});
-        option("region", region, sim::at_least(1), {"which bubble"});
+        option("repeat", repeat, sim::between(1, 1'000'000), {"how often it happens"});
+        option("interval", interval, sim::at_least(0.0), {"between one time and the next", "time"});
+        option("region", region, sim::at_least(0), {"which bubble; 0: pop one at random that touches the outside"});
         option("into", into, sim::at_least(-1),
                {"pop: the region that it joins; -1: the one that shares most film with it"});
         option("volume", volume, sim::at_least(0.0), {"inflate: the new volume; 0: `factor` times the first", "length^3"});
         option("factor", factor, sim::more_than(0.0), {"inflate: the new volume over the first"});
+        option("duration", duration, sim::at_least(0.0),
+               {"inflate: how long it takes, for the solvers that move", "time"});
     }
 };
 
@@ -178,6 +225,7 @@ struct FilmTables {
     std::vector<FilmTable> films;
     std::vector<FoamTable> foams;  ///< none or one
     std::vector<TensionTable> tensions;
+    std::vector<WireTable> wires;
     std::vector<EventTable> events;
 };
 

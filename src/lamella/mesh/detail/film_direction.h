@@ -2,7 +2,7 @@
 
 #include "lamella/core/vec.h"
 #include "lamella/mesh/edge_faces.h"
-#include "lamella/mesh/detail/vertex_corners.h"
+#include "lamella/mesh/vertex_corners.h"
 #include "lamella/mesh/foam_mesh.h"
 
 #include <cstddef>

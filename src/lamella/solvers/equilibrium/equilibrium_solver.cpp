@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.h"
 #include "lamella/core/random.h"
+#include "lamella/film/bursting.h"
 #include "lamella/mesh/area.h"
 #include "lamella/sim/mesh_archive.h"
 
@@ -9,31 +10,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 namespace lamella::equilibrium {
-namespace {
 
 using mesh::RegionId;
 using mesh::RegionKind;
-
-/// The region that shares most film with `region`.
-RegionId largest_neighbor(const mesh::FoamMesh& mesh, RegionId region) {
-    std::map<RegionId, double> shared;
-    for (const mesh::FaceId f : mesh.faces.ids()) {
-        const auto& [vertices, back, front] = mesh.faces[f];
-        if (back != region && front != region) continue;
-        shared[back == region ? front : back] +=
-            norm(cross(mesh.corner(f, 1) - mesh.corner(f, 0), mesh.corner(f, 2) - mesh.corner(f, 0)));
-    }
-    const auto most = std::max_element(shared.begin(), shared.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (most == shared.end()) throw InputError(fmt::format("there is no bubble {} that could burst", index(region)));
-    return most->first;
-}
-
-}  // namespace
 
 EquilibriumSolver::EquilibriumSolver(const Options& options, const sim::SolverInput& input)
     : options_(options), input_(input) {
@@ -152,20 +134,25 @@ void EquilibriumSolver::apply_events() {
 }
 
 void EquilibriumSolver::apply(const film::Event& event) {
-    const auto& regions = relaxation_->mesh().regions;
-    if (index(event.region) >= regions.size() || regions[event.region].kind != RegionKind::kClosed) {
-        events_.push_back({time_, "skipped", {}, fmt::format("bubble {} is gone already", index(event.region))});
+    const mesh::FoamMesh& films = relaxation_->mesh();
+    const auto& regions = films.regions;
+    const RegionId region = event.region == film::kRandomBubble
+                                ? film::random_outer_bubble(films, input_.seed, next_event_).value_or(mesh::kOutside)
+                                : event.region;
+    if (index(region) >= regions.size() || regions[region].kind != RegionKind::kClosed) {
+        events_.push_back({time_, "skipped", {}, fmt::format("bubble {} is gone already", index(region))});
         return;
     }
     answer_.reset();
     if (event.kind == film::Event::Kind::kInflate) {
-        relaxation_->set_target_volume(event.region, event.volume);
-        events_.push_back({time_, "inflate", {}, fmt::format("bubble {}", index(event.region))});
+        relaxation_->set_target_volume(region, event.volume);
+        events_.push_back({time_, "inflate", {}, fmt::format("bubble {}", index(region))});
         return;
     }
-    const RegionId into = event.into == film::kLargestNeighbor ? largest_neighbor(relaxation_->mesh(), event.region)
-                                                               : event.into;
-    relaxation_->pop(event.region, into);
+    const RegionId into = event.into == film::kLargestNeighbor
+                              ? film::largest_neighbor(films, region).value_or(mesh::kOutside)
+                              : event.into;
+    relaxation_->pop(region, into);
     collect_events();
 }
 

@@ -5,6 +5,7 @@
 #include "lamella/mesh/plateau_faults.h"
 #include "lamella/mesh/quality.h"
 #include "lamella/mesh/smoothing.h"
+#include "lamella/mesh/staged_move.h"
 #include "lamella/mesh/subdivide.h"
 #include "lamella/mesh/volume.h"
 #include "lamella/sim/mesh_archive.h"
@@ -149,19 +150,6 @@ void Relaxation::measure() {
         residual_ = std::max(residual_, std::abs(balance.missing[r]) / system.target(r));
 }
 
-/// The tracker goes as far as is safe in one move; the rest follows in a few more.
-void Relaxation::push(const IdVector<VertexId, Vec3>& displacement) {
-    double longest = 0.0;
-    for (const Vec3& d : displacement) longest = std::max(longest, norm(d));
-    const double reach = 0.9 * tracker_->options().longest_step * edge_length_;
-    constexpr double kMostMoves = 4.0;
-    const double moves = std::clamp(std::ceil(longest / reach), 1.0, kMostMoves);
-    const double share = std::min(1.0 / moves, longest > 0.0 ? reach / longest : 1.0);
-    IdVector<VertexId, Vec3> part = displacement;
-    for (Vec3& d : part) d *= share;
-    for (int k = 0; k < static_cast<int>(moves); ++k) tracker_->move(part);
-}
-
 void Relaxation::tidy() {
     tracker_->move(mesh::tangential_smoothing(mesh()));
     tracker_->remesh();
@@ -182,7 +170,7 @@ double Relaxation::flow_time() const {
 }
 
 void Relaxation::flow() {
-    push(curvature_flow_step(mesh(), options_.tension, flow_time()));
+    mesh::staged_move(*tracker_, curvature_flow_step(mesh(), options_.tension, flow_time()));
     tidy();
 }
 
@@ -190,7 +178,7 @@ void Relaxation::newton() {
     RestSystem system = flat_system(mesh(), options_);
     Newton newton(system, Goal::kMinimum);
     newton.step();
-    push(displacement_to(system.patches().position));
+    mesh::staged_move(*tracker_, displacement_to(system.patches().position));
     tidy();
 }
 

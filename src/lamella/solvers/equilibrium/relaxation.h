@@ -61,7 +61,6 @@ public:
 
 private:
     void take(mesh::FoamMesh mesh, double edge_length);
-    void push(const IdVector<mesh::VertexId, Vec3>& displacement);
     void tidy();
     IdVector<mesh::VertexId, Vec3> displacement_to(const std::vector<Vec3>& position) const;
     void flow();

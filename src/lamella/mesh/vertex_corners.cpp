@@ -1,8 +1,8 @@
-#include "lamella/mesh/detail/vertex_corners.h"
+#include "lamella/mesh/vertex_corners.h"
 
 #include <numeric>
 
-namespace lamella::mesh::detail {
+namespace lamella::mesh {
 
 VertexCorners vertex_corners(const FoamMesh& mesh) {
     VertexCorners corners;
@@ -18,4 +18,4 @@ VertexCorners vertex_corners(const FoamMesh& mesh) {
     return corners;
 }
 
-}  // namespace lamella::mesh::detail
+}  // namespace lamella::mesh

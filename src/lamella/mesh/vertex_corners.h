@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace lamella::mesh::detail {
+namespace lamella::mesh {
 
 /// Corner k of a face.
 struct Corner {
@@ -27,4 +27,4 @@ struct VertexCorners {
 
 VertexCorners vertex_corners(const FoamMesh& mesh);
 
-}  // namespace lamella::mesh::detail
+}  // namespace lamella::mesh

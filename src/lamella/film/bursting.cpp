@@ -1,0 +1,33 @@
+#include "lamella/film/bursting.h"
+
+#include "lamella/core/random.h"
+#include "lamella/mesh/area.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace lamella::film {
+
+using mesh::RegionId;
+
+std::optional<RegionId> largest_neighbor(const mesh::FoamMesh& mesh, RegionId region) {
+    std::optional<RegionId> neighbor;
+    double most = 0.0;
+    for (const mesh::FilmArea& film : mesh::film_areas(mesh)) {
+        if ((film.a != region && film.b != region) || film.area <= most) continue;
+        most = film.area;
+        neighbor = film.a == region ? film.b : film.a;
+    }
+    return neighbor;
+}
+
+std::optional<RegionId> random_outer_bubble(const mesh::FoamMesh& mesh, std::uint64_t seed, std::uint64_t draw) {
+    std::vector<RegionId> outer;
+    for (const mesh::FilmArea& film : mesh::film_areas(mesh))
+        if (film.a == mesh::kOutside && mesh.regions[film.b].kind == mesh::RegionKind::kClosed) outer.push_back(film.b);
+    if (outer.empty()) return std::nullopt;
+    const double u = uniform01(random_bits(seed, RandomStream::kFilmRupture, 0, draw));
+    return outer[std::min(outer.size() - 1, static_cast<std::size_t>(u * static_cast<double>(outer.size())))];
+}
+
+}  // namespace lamella::film

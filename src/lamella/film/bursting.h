@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "lamella/mesh/foam_mesh.h"
+
+namespace lamella::film {
+
+/// The region that shares most film with `region`, or nothing where it has no film.
+std::optional<mesh::RegionId> largest_neighbor(const mesh::FoamMesh& mesh, mesh::RegionId region);
+
+/// A bubble drawn at random among those that touch the outside, all with the same probability; nothing when none does.
+/// @param draw  which draw of the run this is: the same seed and draw give the same bubble
+std::optional<mesh::RegionId> random_outer_bubble(const mesh::FoamMesh& mesh, std::uint64_t seed, std::uint64_t draw);
+
+}  // namespace lamella::film

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace lamella::linalg {
+
+/// How far an iterative solution went.
+struct IterativeSolution {
+    int iterations = 0;
+    double residual = 0.0;  ///< |b - A x| / |b|, 0 for b = 0
+};
+
+/// Conjugate gradients for a symmetric positive semi-definite operator, from the given x.
+///
+/// @param apply      apply(x, y): y = A x for vectors of b's length
+/// @param scale      inverse of a diagonal preconditioner, or empty
+/// @param tolerance  of the residual, relative to |b|
+/// @param x          the start, and the answer
+template <class Operator>
+IterativeSolution conjugate_gradient(Operator&& apply,
+                                     const std::vector<double>& scale,
+                                     const std::vector<double>& b,
+                                     std::vector<double>& x,
+                                     double tolerance,
+                                     int most_iterations) {
+    const std::size_t n = b.size();
+    const auto dot = [n](const std::vector<double>& u, const std::vector<double>& v) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < n; ++i) sum += u[i] * v[i];
+        return sum;
+    };
+    const auto precondition = [&](const std::vector<double>& u, std::vector<double>& v) {
+        v = u;
+        if (!scale.empty())
+            for (std::size_t i = 0; i < n; ++i) v[i] *= scale[i];
+    };
+    std::vector<double> residual(n), direction, image(n), scaled;
+    apply(x, image);
+    for (std::size_t i = 0; i < n; ++i) residual[i] = b[i] - image[i];
+    const double size = std::sqrt(dot(b, b));
+    IterativeSolution done{0, size > 0.0 ? std::sqrt(dot(residual, residual)) / size : 0.0};
+    if (size == 0.0) {
+        x.assign(n, 0.0);
+        return done;
+    }
+    precondition(residual, scaled);
+    direction = scaled;
+    double product = dot(residual, scaled);
+    while (done.iterations < most_iterations && done.residual > tolerance) {
+        apply(direction, image);
+        const double curvature = dot(direction, image);
+        if (!(curvature > 0.0)) break;  // a direction that the operator does not see, or rounding: no better to be had
+        const double step = product / curvature;
+        for (std::size_t i = 0; i < n; ++i) {
+            x[i] += step * direction[i];
+            residual[i] -= step * image[i];
+        }
+        precondition(residual, scaled);
+        const double next = dot(residual, scaled);
+        for (std::size_t i = 0; i < n; ++i) direction[i] = scaled[i] + (next / product) * direction[i];
+        product = next;
+        ++done.iterations;
+        done.residual = std::sqrt(dot(residual, residual)) / size;
+    }
+    return done;
+}
+
+}  // namespace lamella::linalg

@@ -1,0 +1,27 @@
+#include "lamella/sim/film_surface.h"
+
+namespace lamella::sim {
+
+Surface film_surface(const mesh::FoamMesh& mesh) {
+    Surface surface;
+    for (const mesh::Face& face : mesh.faces)
+        surface.regions.push_back(
+            {static_cast<std::int32_t>(index(face.back)), static_cast<std::int32_t>(index(face.front))});
+    if (mesh.periodic()) {
+        for (const mesh::FaceId f : mesh.faces.ids())
+            for (std::size_t k = 0; k < 3; ++k) surface.position.push_back(mesh.corner(f, k));
+        for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) surface.triangles.push_back({3 * f, 3 * f + 1, 3 * f + 2});
+        return surface;
+    }
+    surface.position = mesh.position.values();
+    for (const mesh::Face& face : mesh.faces) {
+        std::array<std::uint32_t, 3> corners{};
+        for (std::size_t k = 0; k < 3; ++k) corners[k] = static_cast<std::uint32_t>(index(face.vertices[k]));
+        surface.triangles.push_back(corners);
+    }
+    surface.vertex_fields.push_back(
+        {"on_wire", "-", 1, true, std::vector<double>(mesh.on_wire.begin(), mesh.on_wire.end())});
+    return surface;
+}
+
+}  // namespace lamella::sim

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "lamella/solvers/vortex_sheet/sheet.h"
+
+#include <vector>
+
+namespace lamella::vortex_sheet {
+
+/// The Laplacian of jumps along the films [sheet 14.2]: a stiffness matrix over entries, compressed rows, with
+///   phi K phi / 2 = 1/2 sum_f sum_edges 1/2 cot(angle opposite) (Gamma_f(p) - Gamma_f(q))^2
+/// It sees differences of regions only, so it keeps the sum over regions at each vertex, and closed loops around triple
+/// lines, exactly. Cotangents are not taken below zero: diffusion stays dissipative and monotone on any mesh.
+class FilmLaplacian {
+public:
+    FilmLaplacian(const mesh::FoamMesh& mesh, const SheetTopology& topology);
+
+    /// y = K x
+    void multiply(const std::vector<double>& x, std::vector<double>& y) const;
+    const std::vector<double>& diagonal() const { return diagonal_; }
+    /// Film area per region at the vertex of an entry, the mean cell of [Fei19] [m^2].
+    const std::vector<double>& cell() const { return cell_; }
+
+private:
+    std::vector<std::size_t> start_;
+    std::vector<std::uint32_t> column_;
+    std::vector<double> value_;
+    std::vector<double> diagonal_;
+    std::vector<double> cell_;
+    std::vector<std::uint8_t> held_;  // rims: their circulation stays
+
+    friend void diffuse(const FilmLaplacian&, double, double, Circulation&);
+    friend void filter_grid_noise(const FilmLaplacian&, double, Circulation&);
+};
+
+/// Physical surface viscosity: d Gamma / dt = viscosity * Laplacian of Gamma along the films, over `dt`, implicitly.
+/// @param viscosity  [m^2/s]
+void diffuse(const FilmLaplacian& laplacian, double viscosity, double dt, Circulation& phi);
+
+/// Takes the shortest waves out: the mode that changes sign from vertex to vertex loses the share `strength`, one
+/// of wave number k about strength * (k h / pi)^4.
+void filter_grid_noise(const FilmLaplacian& laplacian, double strength, Circulation& phi);
+
+}  // namespace lamella::vortex_sheet

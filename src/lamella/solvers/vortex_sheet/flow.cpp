@@ -1,0 +1,104 @@
+#include "lamella/solvers/vortex_sheet/flow.h"
+
+#include "lamella/core/parallel.h"
+#include "lamella/linalg/conjugate_gradient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lamella::vortex_sheet {
+
+using mesh::FaceId;
+using mesh::FoamMesh;
+using mesh::VertexId;
+
+LineVortices blown_rings(std::span<const film::Wire> wires, double time, double segment) {
+    LineVortices lines;
+    for (const film::Wire& wire : wires) {
+        if (!wire.ring || wire.ring->blow == 0.0) continue;
+        const double circulation = wire.ring->blow * (std::clamp(time, wire.start, wire.end) - wire.start);
+        if (circulation == 0.0) continue;
+        const Vec3& axis = wire.ring->axis;
+        const Vec3 side = std::abs(axis[0]) < 0.6 ? Vec3{{1, 0, 0}} : Vec3{{0, 1, 0}};
+        const Vec3 u = cross(axis, side) / norm(cross(axis, side));
+        const Vec3 v = cross(axis, u);
+        const double turn = 2.0 * std::numbers::pi;
+        const auto corners = static_cast<std::size_t>(std::max(24.0, std::ceil(turn * wire.ring->radius / segment)));
+        const auto corner = [&](std::size_t k) {
+            const double a = turn * static_cast<double>(k) / static_cast<double>(corners);
+            return wire.carried(wire.center + wire.ring->radius * (std::cos(a) * u + std::sin(a) * v), 0.0, time);
+        };
+        for (std::size_t k = 0; k < corners; ++k) {
+            const Vec3 a = corner(k), b = corner(k + 1);
+            lines.center.push_back(0.5 * (a + b));
+            lines.strength.push_back(circulation * (b - a));
+        }
+    }
+    return lines;
+}
+
+double Flow::energy() const {
+    return 0.5 * parallel_sum(strength.size(), [&](std::size_t f) { return dot(strength[f], potential[f]); });
+}
+
+Flow flow_at(const FoamMesh& mesh,
+             const SheetTopology& topology,
+             const SheetGeometry& geometry,
+             const Circulation& phi,
+             const LineVortices& lines,
+             const spatial::VortexSumOptions& sum) {
+    Flow flow;
+    flow.strength = face_strengths(mesh, topology, phi);
+    std::vector<Vec3> center = geometry.barycenter, strength = flow.strength;
+    center.insert(center.end(), lines.center.begin(), lines.center.end());
+    strength.insert(strength.end(), lines.strength.begin(), lines.strength.end());
+    spatial::VortexField field = spatial::vortex_sum(geometry.barycenter, center, strength, sum, true);
+    flow.potential = std::move(field.potential);
+    flow.flux = fluxes(mesh, topology, flow.potential);
+    flow.velocity = vertex_velocity(topology, geometry, field.velocity, flow.flux);
+    return flow;
+}
+
+double meet_fluxes(const FoamMesh& mesh,
+                   const SheetTopology& topology,
+                   const SheetGeometry& geometry,
+                   const FluxTarget& target,
+                   std::span<const double> flux,
+                   double tolerance,
+                   const spatial::VortexSumOptions& sum,
+                   Circulation& phi) {
+    // The triangles that touch an entry in question.
+    std::vector<std::uint8_t> in_target(topology.size(), 0);
+    for (const std::uint32_t e : target.entry) in_target[e] = 1;
+    std::vector<FaceId> faces;
+    for (const FaceId f : mesh.faces.ids()) {
+        const auto& corners = topology.entry[f];
+        if (std::any_of(corners.begin(), corners.end(), [&](const auto& e) { return in_target[e[0]] + in_target[e[1]] > 0; }))
+            faces.push_back(f);
+    }
+    std::vector<Vec3> center;
+    for (const FaceId f : faces) center.push_back(geometry.barycenter[index(f)]);
+
+    Circulation change(topology.size(), 0.0);
+    std::vector<Vec3> strength(faces.size()), potential(mesh.faces.size());
+    const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
+        for (std::size_t i = 0; i < x.size(); ++i) change[target.entry[i]] = x[i];
+        const std::vector<Vec3> all = face_strengths(mesh, topology, change);
+        for (std::size_t i = 0; i < faces.size(); ++i) strength[i] = all[index(faces[i])];
+        const spatial::VortexField field = spatial::vortex_sum(center, center, strength, sum, true);
+        for (std::size_t i = 0; i < faces.size(); ++i) potential[index(faces[i])] = field.potential[i];
+        const std::vector<double> w = fluxes(mesh, topology, potential);
+        y.resize(x.size());
+        for (std::size_t i = 0; i < x.size(); ++i) y[i] = w[target.entry[i]];
+    };
+    std::vector<double> missing(target.entry.size()), x(target.entry.size(), 0.0);
+    for (std::size_t i = 0; i < missing.size(); ++i) missing[i] = target.flux[i] - flux[target.entry[i]];
+    constexpr int kMostIterations = 200;
+    const linalg::IterativeSolution done =
+        linalg::conjugate_gradient(apply, {}, missing, x, tolerance, kMostIterations);
+    for (std::size_t i = 0; i < x.size(); ++i) phi[target.entry[i]] += x[i];
+    return done.residual;
+}
+
+}  // namespace lamella::vortex_sheet

@@ -1,0 +1,83 @@
+#pragma once
+
+#include "lamella/sim/options.h"
+#include "lamella/spatial/vortex_sum.h"
+
+namespace lamella::vortex_sheet {
+
+enum class Integrator {
+    kVerlet,           ///< kick, drift with the velocity at the predicted midpoint, kick [sheet 14.5]
+    kSymplecticEuler,  ///< the published one
+};
+enum class Form {
+    kFace,   ///< velocity and vector potential at barycentres; stable on any mesh [sheet 14.1]
+    kPoint,  ///< velocity at vertices, curvature from dihedral angles, as published
+};
+
+/// Published behaviour, for comparison.
+struct CompatOptions {
+    Form form = Form::kFace;
+    double velocity_factor = 1.0;
+    double smoothing = 0.0;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("form", form, sim::choices<Form>({{"face", Form::kFace}, {"point", Form::kPoint}}),
+               {"face: the stable one; point: velocities at vertices as published, which needs smoothing", "-", "[Da15]"});
+        option("velocity_factor", velocity_factor, sim::more_than(0.0),
+               {"the published program moves films twice too fast: 2 gives its frequencies", "-", "[Da15]"});
+        option("smoothing", smoothing, sim::at_least(0.0),
+               {"rate at which circulations follow the mean of their neighbors; depends on the mesh", "1/time", "[Da15]"});
+    }
+};
+
+/// [vortex_sheet] of a scene.
+struct Options {
+    spatial::VortexKernel kernel = spatial::VortexKernel::kK3;
+    double smoothing_length = 1.5;
+    Integrator integrator = Integrator::kVerlet;
+    double step_safety = 0.4;
+    double largest_step = 0.0;
+    double surface_viscosity = 0.0;
+    double grid_filter = 0.0;
+    double damping = 0.0;
+    bool volume_projection = true;
+    bool impulse_projection = true;
+    bool remeshing = true;
+    bool merging = true;
+    double sum_tolerance = 1e-5;
+    CompatOptions compat;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("kernel", kernel,
+               sim::choices<spatial::VortexKernel>({{"plummer", spatial::VortexKernel::kPlummer},
+                                                    {"k2", spatial::VortexKernel::kK2},
+                                                    {"k3", spatial::VortexKernel::kK3}}),
+               {"how the law of Biot and Savart is smoothed: to first, second or third order"});
+        option("smoothing_length", smoothing_length, sim::between(0.1, 10.0),
+               {"of the kernel, in edge lengths; the paper's plummer has 0.5 to 0.75"});
+        option("integrator", integrator,
+               sim::choices<Integrator>(
+                   {{"verlet", Integrator::kVerlet}, {"symplectic_euler", Integrator::kSymplecticEuler}}),
+               {"verlet: second order; symplectic_euler: first order, as published"});
+        option("step_safety", step_safety, sim::strictly_between(0.0, 1.0),
+               {"time step over the limit that the fastest capillary wave sets"});
+        option("largest_step", largest_step, sim::at_least(0.0), {"upper limit of the time step; 0: none", "time"});
+        option("surface_viscosity", surface_viscosity, sim::at_least(0.0),
+               {"diffusivity of the circulation along the films", "length^2/time"});
+        option("grid_filter", grid_filter, sim::between(0.0, 1.0),
+               {"share that the shortest wave of the mesh loses per step; long waves lose next to nothing"});
+        option("damping", damping, sim::at_least(0.0),
+               {"rate at which all circulations decay: a way to rest, no physics", "1/time"});
+        option("volume_projection", volume_projection, {"bubbles keep their volumes to rounding"});
+        option("impulse_projection", impulse_projection, {"tension gives no net push to a free cluster"});
+        option("remeshing", remeshing, {"false: the triangles stay as they are, nothing merges or parts"});
+        option("merging", merging, {"films that touch become one"});
+        option("sum_tolerance", sum_tolerance, sim::strictly_between(0.0, 0.1),
+               {"error of the fast summation over the largest velocity; small meshes are summed exactly"});
+        option.group("compat", compat, "published behaviour, for comparison");
+    }
+};
+
+}  // namespace lamella::vortex_sheet

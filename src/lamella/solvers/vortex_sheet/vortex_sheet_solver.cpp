@@ -1,0 +1,354 @@
+#include "lamella/solvers/vortex_sheet/vortex_sheet_solver.h"
+
+#include "lamella/core/error.h"
+#include "lamella/film/bursting.h"
+#include "lamella/film/tension.h"
+#include "lamella/mesh/area.h"
+#include "lamella/mesh/quality.h"
+#include "lamella/mesh/staged_move.h"
+#include "lamella/mesh/volume.h"
+#include "lamella/mesh/volume_projection.h"
+#include "lamella/solvers/vortex_sheet/film_laplacian.h"
+#include "lamella/solvers/vortex_sheet/impulse.h"
+#include "lamella/solvers/vortex_sheet/point_form.h"
+#include "lamella/solvers/vortex_sheet/step_limit.h"
+#include "lamella/solvers/vortex_sheet/transfer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lamella::vortex_sheet {
+
+using mesh::FoamMesh;
+using mesh::RegionId;
+using mesh::RegionKind;
+using mesh::VertexId;
+
+VortexSheetSolver::VortexSheetSolver(const Options& options, const sim::SolverInput& input)
+    : options_(options), input_(input) {
+    if (!input_.films) throw InputError("the scene has no films; add a [[bubble]], [[film]] or [foam]");
+    if (input_.films->mesh.periodic()) throw InputError("vortex_sheet: films in a periodic box are for solver equilibrium");
+    if (options_.compat.form == Form::kPoint && options_.integrator == Integrator::kVerlet)
+        throw InputError("vortex_sheet.compat.form = \"point\" goes with integrator = \"symplectic_euler\"");
+    for (const film::Event& event : input_.films->events)
+        if (event.kind == film::Event::Kind::kInflate && !options_.volume_projection)
+            throw InputError("vortex_sheet.volume_projection = false: bubbles cannot be inflated without it");
+}
+
+void VortexSheetSolver::start(const sim::StartContext&) {
+    wire_of_ = input_.films->wire_of;
+    wire_of_.resize(input_.films->mesh.position.size(), -1);
+    take(input_.films->mesh);
+    phi_.assign(topology_.size(), 0.0);
+    velocity_.assign(mesh().position.size(), {});
+    give_start_velocities();
+    apply_events();
+}
+
+void VortexSheetSolver::take(FoamMesh mesh) {
+    mesh::TrackerOptions options;
+    options.edge_length = input_.films->edge_length;
+    options.merging = options_.merging;
+    tracker_ = std::make_unique<mesh::Tracker>(std::move(mesh), options);
+    topology_ = sheet_topology(tracker_->mesh());
+}
+
+void VortexSheetSolver::set_circulation(Circulation phi) {
+    phi_ = std::move(phi);
+    impulse_ = impulse(mesh(), topology_, sheet_geometry(mesh(), topology_), phi_);
+    observed_.reset();
+}
+
+/// Bubbles that the scene sends off move as a whole at first: the flux through each vertex is that of its bubbles' mean
+/// velocity.
+void VortexSheetSolver::give_start_velocities() {
+    const auto& velocity = input_.films->velocity;
+    if (std::none_of(velocity.begin(), velocity.end(), [](const Vec3& v) { return squared_norm(v) > 0.0; })) return;
+    const SheetGeometry geometry = sheet_geometry(mesh(), topology_);
+    FluxTarget target;
+    for (const VertexId v : mesh().position.ids()) {
+        Vec3 mean;
+        double bubbles = 0.0;
+        for (const RegionId r : topology_.entries.of(v))
+            if (mesh().regions[r].kind == RegionKind::kClosed) {
+                mean += velocity[r];
+                bubbles += 1.0;
+            }
+        for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i) {
+            target.entry.push_back(static_cast<std::uint32_t>(i));
+            target.flux.push_back(bubbles > 0.0 ? dot(geometry.outward[i], mean) / bubbles : 0.0);
+        }
+    }
+    constexpr double kTolerance = 1e-3;  // what is left are ripples of the length of an edge
+    meet_fluxes(mesh(), topology_, geometry, target, std::vector<double>(topology_.size(), 0.0), kTolerance,
+                sum_options(), phi_);
+    fix_gauge(topology_, phi_);
+    impulse_ = impulse(mesh(), topology_, geometry, phi_);
+}
+
+sim::StepReport VortexSheetSolver::advance(double time_limit) {
+    const double dt = choose_step(time_limit);
+    const bool verlet = options_.integrator == Integrator::kVerlet;
+    kick(verlet ? 0.5 * dt : dt);
+    damp(dt);
+    velocity_ = velocity_at_midpoint(verlet ? dt : 0.0);
+    move(dt);
+    time_ = dt >= time_limit - time_ ? time_limit : time_ + dt;
+    if (verlet) kick(0.5 * dt);
+    inflate();
+    restore_volumes();
+    if (options_.remeshing) remesh();
+    keep_impulse();
+    apply_events();
+    step_ = dt;
+    ++steps_;
+    observed_.reset();
+    return {.step = dt, .evaluations = 1, .residual = wire_residual_};
+}
+
+double VortexSheetSolver::choose_step(double time_limit) const {
+    double dt = options_.step_safety * capillary_limit();
+    if (options_.largest_step > 0.0) dt = std::min(dt, options_.largest_step);
+    double fastest = 0.0;
+    for (const Vec3& u : velocity_) fastest = std::max(fastest, norm(u));
+    for (const film::Wire& wire : input_.films->wires) fastest = std::max(fastest, norm(wire.velocity));
+    constexpr double kFarthest = 0.25;  // edges that a film may move in one step
+    if (fastest > 0.0) dt = std::min(dt, kFarthest * input_.films->edge_length / fastest);
+    double limit = time_limit;
+    const auto& events = input_.films->events;
+    if (next_event_ < events.size()) limit = std::min(limit, std::max(events[next_event_].time, time_));
+    const double left = limit - time_;
+    if (left <= dt) return left;
+    return left < 2.0 * dt ? 0.5 * left : dt;  // no crumb of a step before an output
+}
+
+/// Tension drives the circulations: d phi_r / dt = -p_r / rho, with the pressures that the films ask for.
+void VortexSheetSolver::kick(double dt) {
+    const film::Problem& films = *input_.films;
+    const SheetGeometry geometry = sheet_geometry(mesh(), topology_);
+    const double tension = films.material.film_tension();
+    const std::vector<double> pressure =
+        options_.compat.form == Form::kFace
+            ? film_pressures(topology_, geometry,
+                             mesh::area_gradient(mesh(), film::face_tensions(mesh(), tension, films.tensions)))
+            : dihedral_pressures(mesh(), topology_, 0.5 * tension);
+    Circulation change(topology_.size(), 0.0);
+    for (const VertexId v : mesh().position.ids()) {
+        if (topology_.hold[v] != Hold::kFree) continue;
+        for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i)
+            change[i] = -dt / films.material.air_density * pressure[i];
+    }
+    if (options_.impulse_projection) {
+        const ImpulseControl control(mesh(), topology_, geometry);
+        std::vector<Vec3> given = control.impulses(change);
+        for (Vec3& p : given) p = -p;
+        control.add(given, change);
+    }
+    for (std::size_t i = 0; i < phi_.size(); ++i) phi_[i] += change[i];
+    fix_gauge(topology_, phi_);
+}
+
+void VortexSheetSolver::damp(double dt) {
+    if (options_.damping > 0.0)
+        for (double& value : phi_) value *= std::exp(-options_.damping * dt);
+    if (options_.compat.smoothing > 0.0)
+        smooth_pairs(mesh(), topology_, std::min(1.0, options_.compat.smoothing * dt), phi_);
+    if (options_.surface_viscosity == 0.0 && options_.grid_filter == 0.0) return;
+    const FilmLaplacian laplacian(mesh(), topology_);
+    if (options_.surface_viscosity > 0.0) diffuse(laplacian, options_.surface_viscosity, dt, phi_);
+    if (options_.grid_filter > 0.0) filter_grid_noise(laplacian, options_.grid_filter, phi_);
+}
+
+/// Velocity of the vertices where they will be half a step from now, as far as the last velocity tells.
+IdVector<VertexId, Vec3> VortexSheetSolver::velocity_at_midpoint(double dt) {
+    FoamMesh middle = mesh();
+    const double half = time_ + 0.5 * dt;
+    for (const VertexId v : middle.position.ids()) {
+        if (topology_.hold[v] == Hold::kFree) middle.position[v] += 0.5 * dt * velocity_[v];
+        else if (wire_of_[v] >= 0)
+            middle.position[v] =
+                input_.films->wires[static_cast<std::size_t>(wire_of_[v])].carried(middle.position[v], time_, half);
+    }
+    const SheetGeometry geometry = sheet_geometry(middle, topology_);
+    const LineVortices lines = lines_at(half, input_.films->edge_length);
+    if (options_.compat.form == Form::kPoint)
+        return point_velocity(middle, topology_, geometry, phi_, lines, sum_options());
+    Flow flow = flow_at(middle, topology_, geometry, phi_, lines, sum_options());
+    obey_wires(middle, geometry, half, half + std::max(dt, 1e-9), flow);
+    return std::move(flow.velocity);
+}
+
+/// Where a wire runs through a film, the circulation there is such that the air goes with the wire.
+void VortexSheetSolver::obey_wires(const FoamMesh& middle, const SheetGeometry& geometry, double from, double to, Flow& flow) {
+    FluxTarget target;
+    for (const VertexId v : middle.position.ids()) {
+        if (topology_.hold[v] != Hold::kPinned) continue;
+        const Vec3 u = wire_velocity(v, middle.position[v], from, to);
+        for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i) {
+            target.entry.push_back(static_cast<std::uint32_t>(i));
+            target.flux.push_back(dot(geometry.outward[i], u));
+        }
+    }
+    wire_residual_ = 0.0;
+    if (target.entry.empty()) return;
+    constexpr double kTolerance = 1e-3;
+    wire_residual_ = meet_fluxes(middle, topology_, geometry, target, flow.flux, kTolerance, sum_options(), phi_);
+    fix_gauge(topology_, phi_);
+    flow = flow_at(middle, topology_, geometry, phi_, lines_at(from, input_.films->edge_length), sum_options());
+}
+
+void VortexSheetSolver::move(double dt) {
+    IdVector<VertexId, Vec3> displacement(mesh().position.size());
+    for (const VertexId v : displacement.ids()) {
+        if (topology_.hold[v] == Hold::kFree) {
+            velocity_[v] *= options_.compat.velocity_factor;
+            displacement[v] = dt * velocity_[v];
+        } else {
+            velocity_[v] = wire_velocity(v, mesh().position[v], time_, time_ + dt);
+            displacement[v] = dt * velocity_[v];
+        }
+    }
+    mesh::staged_move(*tracker_, displacement);
+}
+
+void VortexSheetSolver::restore_volumes() {
+    if (!options_.volume_projection) return;
+    constexpr int kRounds = 2;
+    tracker_->move(mesh::volume_projection(mesh(), kRounds).displacement);
+}
+
+template <class Edit>
+void VortexSheetSolver::edit_mesh(Edit&& edit) {
+    Transfer transfer(topology_, phi_, velocity_);
+    tracker_->set_resampler(transfer.resampler());
+    edit();
+    tracker_->set_resampler({});
+    const std::vector<mesh::TopologyEvent> events = tracker_->take_events();
+    Transfer::Result result = transfer.finish(mesh(), tracker_->maps(), events);
+    topology_ = std::move(result.topology);
+    phi_ = std::move(result.phi);
+    velocity_ = std::move(result.velocity);
+    IdVector<VertexId, std::int32_t> wire_of(mesh().position.size(), -1);
+    for (const VertexId old : wire_of_.ids())
+        if (tracker_->maps().vertex[old] != mesh::kNoVertex) wire_of[tracker_->maps().vertex[old]] = wire_of_[old];
+    wire_of_ = std::move(wire_of);
+    for (const VertexId v : wire_of_.ids())  // circulation ends where a film does
+        if (topology_.hold[v] == Hold::kRim)
+            for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i) phi_[i] = 0.0;
+    for (const mesh::TopologyEvent& event : events)
+        events_.push_back({time_, std::string(mesh::name(event.kind)), event.position,
+                           fmt::format("regions {} {}", index(event.a), index(event.b))});
+}
+
+void VortexSheetSolver::remesh() {
+    edit_mesh([&] { tracker_->remesh(); });
+    restore_volumes();
+}
+
+/// Without wires nothing outside pushes the air: what remeshing and rounding did to its impulse is taken back.
+void VortexSheetSolver::keep_impulse() {
+    if (!options_.impulse_projection) return;
+    const SheetGeometry geometry = sheet_geometry(mesh(), topology_);
+    const ImpulseControl control(mesh(), topology_, geometry);
+    double total = 0.0;
+    for (std::size_t c = 0; c < control.clusters(); ++c) {
+        if (control.held(c)) return;
+        total += control.volume(c);
+    }
+    if (!(total > 0.0)) return;
+    for (const film::Wire& wire : input_.films->wires)
+        if (wire.ring && wire.ring->blow != 0.0) return;
+    const Vec3 missing = impulse_ - impulse(mesh(), topology_, geometry, phi_);
+    std::vector<Vec3> change(control.clusters());
+    for (std::size_t c = 0; c < change.size(); ++c) change[c] = (control.volume(c) / total) * missing;
+    control.add(change, phi_);
+    fix_gauge(topology_, phi_);
+}
+
+void VortexSheetSolver::apply_events() {
+    const auto& events = input_.films->events;
+    for (; next_event_ < events.size() && events[next_event_].time <= time_; ++next_event_) apply(events[next_event_]);
+}
+
+void VortexSheetSolver::apply(const film::Event& event) {
+    const RegionId region = event.region == film::kRandomBubble
+                                ? film::random_outer_bubble(mesh(), input_.seed, next_event_).value_or(mesh::kOutside)
+                                : event.region;
+    if (index(region) >= mesh().regions.size() || mesh().regions[region].kind != RegionKind::kClosed) {
+        events_.push_back({time_, "skipped", {}, fmt::format("bubble {} is gone already", index(region))});
+        return;
+    }
+    if (event.kind == film::Event::Kind::kInflate) {
+        inflations_.push_back({region, mesh().regions[region].target_volume, event.volume, time_, time_ + event.duration});
+        events_.push_back({time_, "inflate", {}, fmt::format("bubble {}", index(region))});
+        return;
+    }
+    pop(region, event.into == film::kLargestNeighbor
+                    ? film::largest_neighbor(mesh(), region).value_or(mesh::kOutside)
+                    : event.into);
+}
+
+/// The circulation of the film that bursts is lost. What was a jump between its two sides at its rim is shared out:
+/// the constants of the two regions are chosen such that the jump vanishes in the mean [sheet 10.1].
+void VortexSheetSolver::pop(RegionId region, RegionId into) {
+    double jump = 0.0, count = 0.0;
+    for (const VertexId v : mesh().position.ids()) {
+        const auto a = topology_.entries.find(v, region), b = topology_.entries.find(v, into);
+        if (!a || !b || topology_.last(v) - topology_.first(v) < 3) continue;
+        jump += phi_[*b] - phi_[*a];
+        count += 1.0;
+    }
+    if (count > 0.0)
+        for (std::size_t i = 0; i < phi_.size(); ++i)
+            if (topology_.entries.region[i] == region) phi_[i] += jump / count;
+    edit_mesh([&] { tracker_->pop(region, into); });
+    impulse_ = impulse(mesh(), topology_, sheet_geometry(mesh(), topology_), phi_);
+}
+
+void VortexSheetSolver::inflate() {
+    for (const Inflation& i : inflations_) {
+        if (mesh().regions[i.region].kind != RegionKind::kClosed) continue;
+        const double share = i.end > i.start ? std::clamp((time_ - i.start) / (i.end - i.start), 0.0, 1.0) : 1.0;
+        tracker_->set_target_volume(i.region, i.from + share * (i.to - i.from));
+    }
+    std::erase_if(inflations_, [&](const Inflation& i) { return time_ >= i.end; });
+}
+
+spatial::VortexSumOptions VortexSheetSolver::sum_options() const {
+    return {.kernel = options_.kernel,
+            .delta = options_.smoothing_length * input_.films->edge_length,
+            .tolerance = options_.sum_tolerance};
+}
+
+LineVortices VortexSheetSolver::lines_at(double time, double segment) const {
+    return blown_rings(input_.films->wires, time, segment);
+}
+
+/// The mean velocity between two times of the wire that holds a vertex; 0 where none moves.
+Vec3 VortexSheetSolver::wire_velocity(VertexId v, const Vec3& at, double from, double to) const {
+    if (wire_of_[v] < 0 || !(to > from)) return {};
+    return (input_.films->wires[static_cast<std::size_t>(wire_of_[v])].carried(at, from, to) - at) / (to - from);
+}
+
+double VortexSheetSolver::capillary_limit() const {
+    const film::Problem& films = *input_.films;
+    double tension = 1.0;
+    for (const film::FilmTension& t : films.tensions) tension = std::max(tension, t.factor);
+    return capillary_step_limit(options_.kernel, options_.smoothing_length, films.edge_length,
+                                tension * options_.compat.velocity_factor * films.material.surface_tension,
+                                films.material.air_density);
+}
+
+const Flow& VortexSheetSolver::observed() const {
+    if (!observed_)
+        observed_ = flow_at(mesh(), topology_, sheet_geometry(mesh(), topology_), phi_,
+                            lines_at(time_, input_.films->edge_length), sum_options());
+    return *observed_;
+}
+
+std::vector<sim::Event> VortexSheetSolver::take_events() { return std::exchange(events_, {}); }
+
+}  // namespace lamella::vortex_sheet

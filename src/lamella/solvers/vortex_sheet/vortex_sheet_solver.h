@@ -1,0 +1,98 @@
+#pragma once
+
+#include "lamella/sim/registry.h"
+#include "lamella/sim/solver.h"
+#include "lamella/solvers/vortex_sheet/flow.h"
+#include "lamella/solvers/vortex_sheet/options.h"
+
+#include "lamella/mesh/tracker.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace lamella::vortex_sheet {
+
+/// Films and foams in air: each film is a vortex sheet whose circulation surface tension drives, and whose induced
+/// velocity moves all films [Da15], in the form of docs/theory/vortex-sheet.md.
+class VortexSheetSolver final : public sim::Solver {
+public:
+    /// @throws InputError  options or films that do not go together
+    VortexSheetSolver(const Options& options, const sim::SolverInput& input);
+
+    void start(const sim::StartContext& context) override;
+    sim::StepReport advance(double time_limit) override;
+
+    double time() const override { return time_; }
+    std::int64_t step() const override { return steps_; }
+
+    sim::Frame frame() const override;
+    std::vector<sim::Scalar> scalars() const override;
+    std::vector<sim::Event> take_events() override;
+    std::vector<sim::Scalar> characteristic_numbers() const override;
+
+    void save(sim::StateWriter& out) const override;
+    void load(sim::StateReader& in) override;
+
+    const mesh::FoamMesh& mesh() const { return tracker_->mesh(); }
+    const SheetTopology& topology() const { return topology_; }
+    const Circulation& circulation() const { return phi_; }
+    /// For tests that start from a flow of their own. @param phi  one value per entry of topology()
+    void set_circulation(Circulation phi);
+
+private:
+    void take(mesh::FoamMesh mesh);
+    void give_start_velocities();
+    // The stages of a step, in order.
+    double choose_step(double time_limit) const;
+    void kick(double dt);
+    void damp(double dt);
+    IdVector<mesh::VertexId, Vec3> velocity_at_midpoint(double dt);
+    void obey_wires(const mesh::FoamMesh& mesh, const SheetGeometry& geometry, double from, double to, Flow& flow);
+    void move(double dt);
+    void restore_volumes();
+    void remesh();
+    void keep_impulse();
+    void apply_events();
+    void apply(const film::Event& event);
+    void pop(mesh::RegionId region, mesh::RegionId into);
+    void inflate();
+    /// Runs an edit of the tracker and lets circulations, velocities and wires follow.
+    template <class Edit>
+    void edit_mesh(Edit&& edit);
+
+    spatial::VortexSumOptions sum_options() const;
+    LineVortices lines_at(double time, double segment) const;
+    Vec3 wire_velocity(mesh::VertexId v, const Vec3& at, double from, double to) const;
+    double capillary_limit() const;
+    /// The flow of this moment, for whoever looks; cached until the state changes.
+    const Flow& observed() const;
+
+    Options options_;
+    sim::SolverInput input_;
+    std::unique_ptr<mesh::Tracker> tracker_;
+    SheetTopology topology_;
+    Circulation phi_;
+    IdVector<mesh::VertexId, Vec3> velocity_;  ///< of the last step: predicts the next midpoint
+    IdVector<mesh::VertexId, std::int32_t> wire_of_;
+    double time_ = 0.0;
+    std::int64_t steps_ = 0;
+    double step_ = 0.0;  ///< the last one
+    Vec3 impulse_;       ///< what the flow is to keep, without wires [m^4/s]
+    double wire_residual_ = 0.0;
+    std::size_t next_event_ = 0;
+    /// A bubble on its way to another volume.
+    struct Inflation {
+        mesh::RegionId region;
+        double from, to;    ///< volumes [m^3]
+        double start, end;  ///< [s]
+    };
+    std::vector<Inflation> inflations_;
+    std::vector<sim::Event> events_;
+    mutable std::optional<Flow> observed_;
+};
+
+/// Adds the solver "vortex_sheet".
+void register_vortex_sheet(sim::SolverRegistry& registry);
+
+}  // namespace lamella::vortex_sheet
