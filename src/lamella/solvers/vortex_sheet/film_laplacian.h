@@ -30,6 +30,7 @@ private:
 
     friend void diffuse(const FilmLaplacian&, double, double, Circulation&);
     friend void filter_grid_noise(const FilmLaplacian&, double, Circulation&);
+    friend void even_out(const FilmLaplacian&, const std::vector<std::uint32_t>&, int, Circulation&);
 };
 
 /// Physical surface viscosity: d Gamma / dt = viscosity * Laplacian of Gamma along the films, over `dt`, implicitly.
@@ -39,5 +40,9 @@ void diffuse(const FilmLaplacian& laplacian, double viscosity, double dt, Circul
 /// Takes the shortest waves out: the mode that changes sign from vertex to vertex loses the share `strength`, one
 /// of wave number k about strength * (k h / pi)^4.
 void filter_grid_noise(const FilmLaplacian& laplacian, double strength, Circulation& phi);
+
+/// Evens the jumps out at the given entries, ascending, by sweeps of a damped relaxation; all other entries stay. Never
+/// raises phi K phi.
+void even_out(const FilmLaplacian& laplacian, const std::vector<std::uint32_t>& entries, int sweeps, Circulation& phi);
 
 }  // namespace lamella::vortex_sheet

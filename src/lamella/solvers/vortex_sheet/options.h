@@ -40,6 +40,7 @@ struct Options {
     double largest_step = 0.0;
     double surface_viscosity = 0.0;
     double grid_filter = 0.0;
+    int healing = 2;
     double damping = 0.0;
     bool volume_projection = true;
     bool impulse_projection = true;
@@ -68,6 +69,8 @@ struct Options {
                {"diffusivity of the circulation along the films", "length^2/time"});
         option("grid_filter", grid_filter, sim::between(0.0, 1.0),
                {"share that the shortest wave of the mesh loses per step; long waves lose next to nothing"});
+        option("healing", healing, sim::between(0, 100),
+               {"sweeps that even circulations out where an edit changed the triangles; 0 lets edits set energy free"});
         option("damping", damping, sim::at_least(0.0),
                {"rate at which all circulations decay: a way to rest, no physics", "1/time"});
         option("volume_projection", volume_projection, {"bubbles keep their volumes to rounding"});

@@ -98,6 +98,7 @@ std::function<void(const mesh::Resampling&)> Transfer::resampler() {
         }
         values_[edit.vertex] = blend(parents, edit.weights);
         velocity_[edit.vertex] = velocity;
+        edited_.push_back(edit.vertex);
     };
 }
 
@@ -105,7 +106,7 @@ Transfer::Result Transfer::finish(const FoamMesh& mesh,
                                   const mesh::CompactionMaps& maps,
                                   std::span<const TopologyEvent> events) const {
     const Origins origins = origins_of(events);
-    Result result{sheet_topology(mesh), {}, IdVector<VertexId, Vec3>(mesh.position.size())};
+    Result result{sheet_topology(mesh), {}, IdVector<VertexId, Vec3>(mesh.position.size()), {}};
     const SheetTopology& topology = result.topology;
     result.phi.assign(topology.size(), 0.0);
     std::vector<std::uint8_t> known(topology.size(), 0);
@@ -147,6 +148,10 @@ Transfer::Result Transfer::finish(const FoamMesh& mesh,
                 }
             if (count > 0) result.phi[i] = sum / count;
         }
+    for (const VertexId old : edited_)
+        if (maps.vertex[old] != mesh::kNoVertex) result.edited.push_back(maps.vertex[old]);
+    std::sort(result.edited.begin(), result.edited.end());
+    result.edited.erase(std::unique(result.edited.begin(), result.edited.end()), result.edited.end());
     fix_gauge(topology, result.phi);
     return result;
 }

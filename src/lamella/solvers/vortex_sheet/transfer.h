@@ -45,6 +45,7 @@ public:
         SheetTopology topology;
         Circulation phi;
         IdVector<mesh::VertexId, Vec3> velocity;
+        std::vector<mesh::VertexId> edited;  ///< vertices that an edit gave new values, ascending
     };
     /// @param events  those of the same remesh or pop: which region came from which
     Result finish(const mesh::FoamMesh& mesh,
@@ -54,6 +55,7 @@ public:
 private:
     IdVector<mesh::VertexId, RegionValues> values_;
     IdVector<mesh::VertexId, Vec3> velocity_;
+    std::vector<mesh::VertexId> edited_;
 };
 
 }  // namespace lamella::vortex_sheet

@@ -238,9 +238,29 @@ void VortexSheetSolver::edit_mesh(Edit&& edit) {
     for (const VertexId v : wire_of_.ids())  // circulation ends where a film does
         if (topology_.hold[v] == Hold::kRim)
             for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i) phi_[i] = 0.0;
+    heal(result.edited);
     for (const mesh::TopologyEvent& event : events)
         events_.push_back({time_, std::string(mesh::name(event.kind)), event.position,
                            fmt::format("regions {} {}", index(event.a), index(event.b))});
+}
+
+/// In narrow wedges of air, as between films that have just met, large circulations of two films cancel in all but name:
+/// the flow does not see them. An edit of one film alone would set that energy free, so the jumps around it are evened out.
+void VortexSheetSolver::heal(const std::vector<VertexId>& edited) {
+    if (edited.empty() || options_.healing == 0) return;
+    std::vector<std::uint8_t> near(mesh().position.size(), 0);
+    for (const VertexId v : edited) near[index(v)] = 1;
+    const std::vector<std::uint8_t> inside = near;
+    for (const mesh::Face& face : mesh().faces)
+        for (const VertexId v : face.vertices)
+            if (inside[index(v)] != 0)
+                for (const VertexId w : face.vertices) near[index(w)] = 1;
+    std::vector<std::uint32_t> entries;
+    for (const VertexId v : mesh().position.ids())
+        if (near[index(v)] != 0)
+            for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i)
+                entries.push_back(static_cast<std::uint32_t>(i));
+    even_out(FilmLaplacian(mesh(), topology_), entries, options_.healing, phi_);
 }
 
 void VortexSheetSolver::remesh() {

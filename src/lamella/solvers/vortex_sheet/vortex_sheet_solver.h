@@ -57,6 +57,7 @@ private:
     void apply(const film::Event& event);
     void pop(mesh::RegionId region, mesh::RegionId into);
     void inflate();
+    void heal(const std::vector<mesh::VertexId>& edited);
     /// Runs an edit of the tracker and lets circulations, velocities and wires follow.
     template <class Edit>
     void edit_mesh(Edit&& edit);
