@@ -133,7 +133,12 @@ Collapse::Collapse(Workbench& bench, VertexId v, VertexId w) : bench_(bench), me
 }
 
 bool Collapse::run() {
-    if (mesh_.on_wire(kept_)) return try_at(kept_at_, 0.0);
+    if (mesh_.on_wire(kept_)) {
+        // A triple line may slide along a wire: one that were tied to a vertex of it could not.
+        const bool ties = std::any_of(beyond_gone_.begin(), beyond_gone_.end(),
+                                      [&](RegionId r) { return !beyond_kept_.contains(r); });
+        return !ties && try_at(kept_at_, 0.0);
+    }
     if (!same_rank_) return try_at(kept_at_, 0.0);
     return try_at(0.5 * (kept_at_ + gone_at_), 0.5) || try_at(kept_at_, 0.0) || try_at(gone_at_, 1.0);
 }
