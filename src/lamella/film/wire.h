@@ -19,7 +19,7 @@ struct Wire {
     struct Ring {
         Vec3 axis;           ///< unit vector, at the start
         double radius = 0.0; ///< [m]
-        double blow = 0.0;   ///< growth of the circulation around the wire, positive along the axis [m^2/s^2]
+        double blow = 0.0;   ///< speed of the jet in the middle of an ideal vortex ring there, along the axis [m/s]
     };
     std::optional<Ring> ring = std::nullopt;  ///< nothing: a straight wire
 

@@ -51,7 +51,9 @@ IterativeSolution conjugate_gradient(Operator&& apply,
     while (done.iterations < most_iterations && done.residual > tolerance) {
         apply(direction, image);
         const double curvature = dot(direction, image);
-        if (!(curvature > 0.0)) break;  // a direction that the operator does not see, or rounding: no better to be had
+        // A direction that the operator hardly sees leads far away for nothing: no better solution is to be had.
+        constexpr double kBlind = 1e-10;
+        if (!(curvature > kBlind * std::sqrt(dot(direction, direction) * dot(image, image)))) break;
         const double step = product / curvature;
         for (std::size_t i = 0; i < n; ++i) {
             x[i] += step * direction[i];

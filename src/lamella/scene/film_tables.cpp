@@ -4,6 +4,7 @@
 #include "lamella/core/random.h"
 #include "lamella/mesh/check.h"
 #include "lamella/mesh/join.h"
+#include "lamella/mesh/shapes/cube.h"
 #include "lamella/mesh/shapes/periodic_foam.h"
 #include "lamella/mesh/shapes/power_cluster.h"
 #include "lamella/mesh/shapes/sphere.h"
@@ -125,6 +126,8 @@ FoamMesh film_of(const FilmTable& film, double h) {
             return mesh::triple_bubble(film.volume, h);
         case FilmShape::kQuadrupleBubble:
             return mesh::quadruple_bubble(film.volume, h);
+        case FilmShape::kCube:
+            return mesh::cube_bubble(film.center, film.edge, h);
         case FilmShape::kKelvin:
             return mesh::periodic_foam(mesh::PeriodicFoam::kKelvin, film.volume, h);
         case FilmShape::kWeairePhelan:
@@ -144,6 +147,7 @@ double film_size(const FilmTable& film) {
         case FilmShape::kRectangle:
             return std::min(norm(film.u), norm(film.v));
         case FilmShape::kFrame:
+        case FilmShape::kCube:
             return 1.5 * film.edge;
         default:
             return std::cbrt(film.second_volume > 0.0 ? std::min(film.volume, film.second_volume) : film.volume) * 3.0;

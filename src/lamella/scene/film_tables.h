@@ -54,7 +54,7 @@ struct BubbleTable {
 
 enum class FilmShape {
     kDisk, kRectangle, kHemisphere, kCylinder, kCatenoid, kFrame, kDoubleBubble, kTripleBubble, kQuadrupleBubble,
-    kKelvin, kWeairePhelan
+    kCube, kKelvin, kWeairePhelan
 };
 
 /// One [[film]]
@@ -84,9 +84,11 @@ struct FilmTable {
                                         {"double_bubble", FilmShape::kDoubleBubble},
                                         {"triple_bubble", FilmShape::kTripleBubble},
                                         {"quadruple_bubble", FilmShape::kQuadrupleBubble},
+                                        {"cube", FilmShape::kCube},
                                         {"kelvin", FilmShape::kKelvin},
                                         {"weaire_phelan", FilmShape::kWeairePhelan}}),
-               {"what it is; frame: films from the edges of a wire frame to its center; kelvin and weaire_phelan:"
+               {"what it is; frame: films from the edges of a wire frame to its center; cube: a bubble with"
+                " flat sides; kelvin and weaire_phelan:"
                 " foams that fill space"});
         option("center", center, sim::any_number(), {"of the film; of a rectangle, its first corner", "length"});
         option("axis", axis, sim::any_number(), {"normal of a disk, axis of the round shapes"});
@@ -103,7 +105,7 @@ struct FilmTable {
                                                {"cube", mesh::FrameShape::kCube},
                                                {"octahedron", mesh::FrameShape::kOctahedron}}),
                {"of a frame: the wire"});
-        option("edge", edge, sim::more_than(0.0), {"of the frame's wires", "length"});
+        option("edge", edge, sim::more_than(0.0), {"of the frame's wires, or of the cube", "length"});
         option("volume", volume, sim::more_than(0.0), {"of each bubble; of a double_bubble, its first", "length^3"});
         option("second_volume", second_volume, sim::at_least(0.0),
                {"of the second bubble of a double_bubble; 0: equal", "length^3"});
@@ -181,8 +183,7 @@ struct WireTable {
         option("start", start, sim::at_least(0.0), {"when it begins to move and to blow", "time"});
         option("end", end, sim::at_least(0.0), {"when it stops; 0: never", "time"});
         option("blow", blow, sim::any_number(),
-               {"air is blown through a ring along its axis: growth of the circulation around the wire",
-                "length^2/time^2"});
+               {"air is blown through a ring along its axis, from start to end: speed of the jet", "length/time"});
     }
 };
 

@@ -13,29 +13,30 @@ using mesh::FaceId;
 using mesh::FoamMesh;
 using mesh::VertexId;
 
-LineVortices blown_rings(std::span<const film::Wire> wires, double time, double segment) {
-    LineVortices lines;
+std::vector<BlownRing> blown_rings(std::span<const film::Wire> wires, double time) {
+    constexpr std::size_t kSides = 64;
+    constexpr double kCore = 0.5;  // of the ring's radius
+    std::vector<BlownRing> blown;
     for (const film::Wire& wire : wires) {
-        if (!wire.ring || wire.ring->blow == 0.0) continue;
-        const double circulation = wire.ring->blow * (std::clamp(time, wire.start, wire.end) - wire.start);
-        if (circulation == 0.0) continue;
+        if (!wire.ring || wire.ring->blow == 0.0 || time < wire.start || time > wire.end) continue;
+        BlownRing ring{{}, {}, kCore * wire.ring->radius};
+        const double circulation = 2.0 * wire.ring->radius * wire.ring->blow;
         const Vec3& axis = wire.ring->axis;
         const Vec3 side = std::abs(axis[0]) < 0.6 ? Vec3{{1, 0, 0}} : Vec3{{0, 1, 0}};
         const Vec3 u = cross(axis, side) / norm(cross(axis, side));
         const Vec3 v = cross(axis, u);
-        const double turn = 2.0 * std::numbers::pi;
-        const auto corners = static_cast<std::size_t>(std::max(24.0, std::ceil(turn * wire.ring->radius / segment)));
         const auto corner = [&](std::size_t k) {
-            const double a = turn * static_cast<double>(k) / static_cast<double>(corners);
+            const double a = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(kSides);
             return wire.carried(wire.center + wire.ring->radius * (std::cos(a) * u + std::sin(a) * v), 0.0, time);
         };
-        for (std::size_t k = 0; k < corners; ++k) {
+        for (std::size_t k = 0; k < kSides; ++k) {
             const Vec3 a = corner(k), b = corner(k + 1);
-            lines.center.push_back(0.5 * (a + b));
-            lines.strength.push_back(circulation * (b - a));
+            ring.center.push_back(0.5 * (a + b));
+            ring.strength.push_back(circulation * (b - a));
         }
+        blown.push_back(std::move(ring));
     }
-    return lines;
+    return blown;
 }
 
 double Flow::energy() const {
@@ -46,16 +47,23 @@ Flow flow_at(const FoamMesh& mesh,
              const SheetTopology& topology,
              const SheetGeometry& geometry,
              const Circulation& phi,
-             const LineVortices& lines,
+             std::span<const BlownRing> blown,
              const spatial::VortexSumOptions& sum) {
     Flow flow;
     flow.strength = face_strengths(mesh, topology, phi);
-    std::vector<Vec3> center = geometry.barycenter, strength = flow.strength;
-    center.insert(center.end(), lines.center.begin(), lines.center.end());
-    strength.insert(strength.end(), lines.strength.begin(), lines.strength.end());
-    spatial::VortexField field = spatial::vortex_sum(geometry.barycenter, center, strength, sum, true);
-    flow.potential = std::move(field.potential);
-    flow.flux = fluxes(mesh, topology, flow.potential);
+    spatial::VortexField field = spatial::vortex_sum(geometry.barycenter, geometry.barycenter, flow.strength, sum, true);
+    flow.potential = field.potential;
+    for (const BlownRing& ring : blown) {
+        spatial::VortexSumOptions smooth = sum;
+        smooth.delta = ring.core;
+        smooth.kernel = spatial::VortexKernel::kPlummer;  // the others are of higher order on sheets only
+        const spatial::VortexField jet = spatial::vortex_sum(geometry.barycenter, ring.center, ring.strength, smooth, true);
+        for (std::size_t f = 0; f < field.velocity.size(); ++f) {
+            field.velocity[f] += jet.velocity[f];
+            field.potential[f] += jet.potential[f];
+        }
+    }
+    flow.flux = fluxes(mesh, topology, field.potential);
     flow.velocity = vertex_velocity(topology, geometry, field.velocity, flow.flux);
     return flow;
 }

@@ -12,19 +12,20 @@
 
 namespace lamella::vortex_sheet {
 
-/// Vortices that are not part of a film: segments of the rings that air is blown through.
-struct LineVortices {
-    std::vector<Vec3> center;    ///< [m]
-    std::vector<Vec3> strength;  ///< circulation times segment [m^3/s]
+/// A vortex ring that is not part of a film: the air that is blown through a ring, as a polygon.
+struct BlownRing {
+    std::vector<Vec3> center;    ///< of the sides [m]
+    std::vector<Vec3> strength;  ///< circulation times side [m^3/s]
+    double core = 0.0;           ///< smoothing length: the jet is as smooth as that of a straw [m]
 };
-/// The rings of all wires at a time, as polygons.
-LineVortices blown_rings(std::span<const film::Wire> wires, double time, double segment);
+/// The rings of all wires that blow at a time.
+std::vector<BlownRing> blown_rings(std::span<const film::Wire> wires, double time);
 
 /// The flow at the films, and what it does to them.
 struct Flow {
     std::vector<Vec3> strength;    ///< G_f
-    std::vector<Vec3> potential;   ///< A_f
-    std::vector<double> flux;      ///< w, per entry
+    std::vector<Vec3> potential;   ///< A_f of the films themselves
+    std::vector<double> flux;      ///< w, per entry, of films and blown rings
     IdVector<mesh::VertexId, Vec3> velocity;  ///< of the vertices [m/s]
 
     /// Kinetic energy of the air over its density, 1/2 sum_f G_f . A_f [m^5/s^2].
@@ -34,7 +35,7 @@ Flow flow_at(const mesh::FoamMesh& mesh,
              const SheetTopology& topology,
              const SheetGeometry& geometry,
              const Circulation& phi,
-             const LineVortices& lines,
+             std::span<const BlownRing> blown,
              const spatial::VortexSumOptions& sum);
 
 /// Which entries a flux is demanded of, and which.

@@ -3,6 +3,8 @@
 #include "lamella/core/parallel.h"
 #include "lamella/linalg/dense.h"
 
+#include <algorithm>
+
 namespace lamella::vortex_sheet {
 namespace {
 
@@ -19,14 +21,19 @@ Vec3 opposite_edge(const FoamMesh& mesh, FaceId f, std::size_t k) {
 
 Vec3 times(const std::array<Vec3, 3>& m, const Vec3& x) { return {{dot(m[0], x), dot(m[1], x), dot(m[2], x)}}; }
 
-/// Pseudo-inverse of sum N N^T. Directions with less than 1e-7 of the largest eigenvalue count as none: three films of
-/// one triple line span two directions to rounding, and a cusp so sharp is not to be inverted.
-std::array<Vec3, 3> pseudo_inverse(std::span<const Vec3> normals) {
+/// Pseudo-inverse of sum N N^T at a vertex whose cell has the given area. Directions with less than 1e-7 of the largest
+/// eigenvalue count as none: three films of one triple line span two directions to rounding. Eigenvalues are about
+/// 2, 1/2 and 1/5 of area^2 on a film, a triple line and where four regions meet; where films are crumpled they are
+/// smaller, and bounded from below, or such a vertex would answer to the least pressure with any speed.
+std::array<Vec3, 3> pseudo_inverse(std::span<const Vec3> normals, double area) {
     std::array<Vec3, 3> inverse{};
+    constexpr double kLeast = 0.01;
+    const double least = kLeast * area * area;
     if (normals.size() == 2) {  // on a film the two are opposite
         const double square = squared_norm(normals[0]);
         if (square == 0.0) return inverse;
-        for (std::size_t i = 0; i < 3; ++i) inverse[i] = (normals[0][i] / (2.0 * square * square)) * normals[0];
+        for (std::size_t i = 0; i < 3; ++i)
+            inverse[i] = (normals[0][i] / (square * std::max(2.0 * square, least))) * normals[0];
         return inverse;
     }
     std::array<Vec3, 3> sum{};
@@ -36,7 +43,7 @@ std::array<Vec3, 3> pseudo_inverse(std::span<const Vec3> normals) {
     constexpr double kCutoff = 1e-7;
     for (std::size_t k = 0; k < 3; ++k) {
         if (pairs.value[k] <= kCutoff * pairs.value[2]) continue;
-        for (std::size_t i = 0; i < 3; ++i) inverse[i] += (pairs.vector[k][i] / pairs.value[k]) * pairs.vector[k];
+        for (std::size_t i = 0; i < 3; ++i) inverse[i] += (pairs.vector[k][i] / std::max(pairs.value[k], least)) * pairs.vector[k];
     }
     return inverse;
 }
@@ -66,14 +73,16 @@ SheetGeometry sheet_geometry(const FoamMesh& mesh, const SheetTopology& topology
     geometry.outward.resize(topology.size());
     geometry.inverse.resize(mesh.position.size());
     for_each_vertex(topology, [&](VertexId v) {
+        double area = 0.0;
         for (const Corner& corner : topology.corners.of(v)) {
             const auto& entry = topology.entry[corner.face][corner.k];
             const Vec3 third = geometry.area_vector[index(corner.face)] / 3.0;
+            area += norm(third);
             geometry.outward[entry[0]] += third;
             geometry.outward[entry[1]] -= third;
         }
         geometry.inverse[v] = pseudo_inverse(
-            std::span(geometry.outward).subspan(topology.first(v), topology.last(v) - topology.first(v)));
+            std::span(geometry.outward).subspan(topology.first(v), topology.last(v) - topology.first(v)), area);
     });
     return geometry;
 }
@@ -116,10 +125,12 @@ IdVector<VertexId, Vec3> vertex_velocity(const SheetTopology& topology,
             weight += area;
         }
         if (weight > 0.0) mean = mean / weight;
+        velocity[v] = mean;
+        if (topology.hold[v] == Hold::kRim) return;  // half a loop around it has no flux
         Vec3 missing;
         for (std::size_t i = topology.first(v); i < topology.last(v); ++i)
             missing += (flux[i] - dot(geometry.outward[i], mean)) * geometry.outward[i];
-        velocity[v] = mean + times(geometry.inverse[v], missing);
+        velocity[v] += times(geometry.inverse[v], missing);
     });
     return velocity;
 }

@@ -28,13 +28,10 @@ IdVector<VertexId, Vec3> point_velocity(const FoamMesh& mesh,
                                         const SheetTopology& topology,
                                         const SheetGeometry& geometry,
                                         const Circulation& phi,
-                                        const LineVortices& lines,
                                         const spatial::VortexSumOptions& sum) {
-    std::vector<Vec3> center = geometry.barycenter, strength = face_strengths(mesh, topology, phi);
-    center.insert(center.end(), lines.center.begin(), lines.center.end());
-    strength.insert(strength.end(), lines.strength.begin(), lines.strength.end());
+    const std::vector<Vec3> strength = face_strengths(mesh, topology, phi);
     return IdVector<VertexId, Vec3>(
-        spatial::vortex_sum(mesh.position.values(), center, strength, sum, false).velocity);
+        spatial::vortex_sum(mesh.position.values(), geometry.barycenter, strength, sum, false).velocity);
 }
 
 void smooth_pairs(const FoamMesh& mesh, const SheetTopology& topology, double share, Circulation& phi) {

@@ -18,7 +18,6 @@ IdVector<mesh::VertexId, Vec3> point_velocity(const mesh::FoamMesh& mesh,
                                               const SheetTopology& topology,
                                               const SheetGeometry& geometry,
                                               const Circulation& phi,
-                                              const LineVortices& lines,
                                               const spatial::VortexSumOptions& sum);
 
 /// Each jump moves the given share of the way to its mean over the neighbors that have it; then the values of a vertex

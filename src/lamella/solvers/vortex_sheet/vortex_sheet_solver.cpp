@@ -21,6 +21,11 @@
 #include <utility>
 
 namespace lamella::vortex_sheet {
+namespace {
+
+constexpr double kFarthest = 0.25;  // edges that a film moves in one step
+
+}  // namespace
 
 using mesh::FoamMesh;
 using mesh::RegionId;
@@ -30,6 +35,10 @@ using mesh::VertexId;
 VortexSheetSolver::VortexSheetSolver(const Options& options, const sim::SolverInput& input)
     : options_(options), input_(input) {
     if (!input_.films) throw InputError("the scene has no films; add a [[bubble]], [[film]] or [foam]");
+    const bool blows = std::any_of(input_.films->wires.begin(), input_.films->wires.end(),
+                                   [](const film::Wire& wire) { return wire.ring && wire.ring->blow != 0.0; });
+    if (blows && options_.compat.form == Form::kPoint)
+        throw InputError("vortex_sheet.compat.form = \"point\" knows no wire.blow");
     if (input_.films->mesh.periodic()) throw InputError("vortex_sheet: films in a periodic box are for solver equilibrium");
     if (options_.compat.form == Form::kPoint && options_.integrator == Integrator::kVerlet)
         throw InputError("vortex_sheet.compat.form = \"point\" goes with integrator = \"symplectic_euler\"");
@@ -115,8 +124,9 @@ double VortexSheetSolver::choose_step(double time_limit) const {
     double fastest = 0.0;
     for (const Vec3& u : velocity_) fastest = std::max(fastest, norm(u));
     for (const film::Wire& wire : input_.films->wires) fastest = std::max(fastest, norm(wire.velocity));
-    constexpr double kFarthest = 0.25;  // edges that a film may move in one step
-    if (fastest > 0.0) dt = std::min(dt, kFarthest * input_.films->edge_length / fastest);
+    // A film that snaps sets the step, down to a twentieth: what is faster still are single vertices out of order.
+    constexpr double kShortest = 0.05;
+    if (fastest > 0.0) dt = std::min(dt, std::max(kShortest * dt, kFarthest * input_.films->edge_length / fastest));
     double limit = time_limit;
     const auto& events = input_.films->events;
     if (next_event_ < events.size()) limit = std::min(limit, std::max(events[next_event_].time, time_));
@@ -173,10 +183,8 @@ IdVector<VertexId, Vec3> VortexSheetSolver::velocity_at_midpoint(double dt) {
                 input_.films->wires[static_cast<std::size_t>(wire_of_[v])].carried(middle.position[v], time_, half);
     }
     const SheetGeometry geometry = sheet_geometry(middle, topology_);
-    const LineVortices lines = lines_at(half, input_.films->edge_length);
-    if (options_.compat.form == Form::kPoint)
-        return point_velocity(middle, topology_, geometry, phi_, lines, sum_options());
-    Flow flow = flow_at(middle, topology_, geometry, phi_, lines, sum_options());
+    if (options_.compat.form == Form::kPoint) return point_velocity(middle, topology_, geometry, phi_, sum_options());
+    Flow flow = flow_at(middle, topology_, geometry, phi_, blown_rings(input_.films->wires, half), sum_options());
     obey_wires(middle, geometry, half, half + std::max(dt, 1e-9), flow);
     return std::move(flow.velocity);
 }
@@ -197,19 +205,18 @@ void VortexSheetSolver::obey_wires(const FoamMesh& middle, const SheetGeometry& 
     constexpr double kTolerance = 1e-3;
     wire_residual_ = meet_fluxes(middle, topology_, geometry, target, flow.flux, kTolerance, sum_options(), phi_);
     fix_gauge(topology_, phi_);
-    flow = flow_at(middle, topology_, geometry, phi_, lines_at(from, input_.films->edge_length), sum_options());
+    flow = flow_at(middle, topology_, geometry, phi_, blown_rings(input_.films->wires, from), sum_options());
 }
 
 void VortexSheetSolver::move(double dt) {
     IdVector<VertexId, Vec3> displacement(mesh().position.size());
+    const double most = 2.0 * kFarthest * input_.films->edge_length / dt;
     for (const VertexId v : displacement.ids()) {
-        if (topology_.hold[v] == Hold::kFree) {
-            velocity_[v] *= options_.compat.velocity_factor;
-            displacement[v] = dt * velocity_[v];
-        } else {
-            velocity_[v] = wire_velocity(v, mesh().position[v], time_, time_ + dt);
-            displacement[v] = dt * velocity_[v];
-        }
+        if (topology_.hold[v] != Hold::kFree) velocity_[v] = wire_velocity(v, mesh().position[v], time_, time_ + dt);
+        else velocity_[v] *= options_.compat.velocity_factor;
+        const double speed = norm(velocity_[v]);
+        if (speed > most) velocity_[v] *= most / speed;
+        displacement[v] = dt * velocity_[v];
     }
     mesh::staged_move(*tracker_, displacement);
 }
@@ -343,10 +350,6 @@ spatial::VortexSumOptions VortexSheetSolver::sum_options() const {
             .tolerance = options_.sum_tolerance};
 }
 
-LineVortices VortexSheetSolver::lines_at(double time, double segment) const {
-    return blown_rings(input_.films->wires, time, segment);
-}
-
 /// The mean velocity between two times of the wire that holds a vertex; 0 where none moves.
 Vec3 VortexSheetSolver::wire_velocity(VertexId v, const Vec3& at, double from, double to) const {
     if (wire_of_[v] < 0 || !(to > from)) return {};
@@ -365,7 +368,7 @@ double VortexSheetSolver::capillary_limit() const {
 const Flow& VortexSheetSolver::observed() const {
     if (!observed_)
         observed_ = flow_at(mesh(), topology_, sheet_geometry(mesh(), topology_), phi_,
-                            lines_at(time_, input_.films->edge_length), sum_options());
+                            blown_rings(input_.films->wires, time_), sum_options());
     return *observed_;
 }
 

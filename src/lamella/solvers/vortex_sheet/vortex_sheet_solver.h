@@ -63,7 +63,6 @@ private:
     void edit_mesh(Edit&& edit);
 
     spatial::VortexSumOptions sum_options() const;
-    LineVortices lines_at(double time, double segment) const;
     Vec3 wire_velocity(mesh::VertexId v, const Vec3& at, double from, double to) const;
     double capillary_limit() const;
     /// The flow of this moment, for whoever looks; cached until the state changes.
