@@ -26,7 +26,8 @@ void contract(const Counts& in, const Counts& out, const double* from, double* t
             double* sum = &second[(i * out[1] + b) * out[2]];
             std::fill_n(sum, out[2], 0.0);
             for (std::size_t j = 0; j < in[1]; ++j)
-                for (std::size_t c = 0; c < out[2]; ++c) sum[c] += weight(1, b, j) * first[(i * in[1] + j) * out[2] + c];
+                for (std::size_t c = 0; c < out[2]; ++c)
+                    sum[c] += weight(1, b, j) * first[(i * in[1] + j) * out[2] + c];
         }
     const std::size_t plane = out[1] * out[2];
     for (std::size_t a = 0; a < out[0]; ++a)
@@ -41,7 +42,8 @@ void carry_up(const GridWeights& weights, const Cluster& outer, const Cluster& i
              [&](std::size_t axis, std::size_t o, std::size_t i) { return weights.w[axis][o][i]; });
 }
 
-void carry_down(const GridWeights& weights, const Cluster& outer, const Cluster& inner, const double* from, double* to) {
+void carry_down(
+    const GridWeights& weights, const Cluster& outer, const Cluster& inner, const double* from, double* to) {
     contract(counts(outer), counts(inner), from, to,
              [&](std::size_t axis, std::size_t o, std::size_t i) { return weights.w[axis][i][o]; });
 }

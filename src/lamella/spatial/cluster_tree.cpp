@@ -48,8 +48,8 @@ std::uint32_t ClusterTree::build(std::uint32_t begin, std::uint32_t end, std::si
 }
 
 /// Chebyshev interpolation on [-a, a] of a function that is analytic up to the distance d from the middle errs by
-/// rho^-n, rho = d/a + sqrt((d/a)^2 - 1). For two clusters of equal radius r at the limit of the rule d = (2/opening - 1) r.
-/// The points along each axis are chosen for the error that `order` of them have in a cube.
+/// rho^-n, rho = d/a + sqrt((d/a)^2 - 1). For two clusters of equal radius r at the limit of the rule d = (2/opening -
+/// 1) r. The points along each axis are chosen for the error that `order` of them have in a cube.
 void ClusterTree::place_proxies(Cluster& cluster) {
     const auto digits = [](double z) { return std::log(z + std::sqrt(z * z - 1.0)); };
     const double reach = std::max(2.0 / rule_.opening - 1.0, 1.0);
@@ -57,7 +57,7 @@ void ClusterTree::place_proxies(Cluster& cluster) {
     for (std::size_t k = 0; k < 3; ++k) {
         double n = 1.0;
         if (cluster.half[k] > 0.0) n = std::ceil(wanted / digits(reach * cluster.radius / cluster.half[k]) - 1e-9);
-        cluster.proxies[k] = static_cast<std::uint8_t>(std::clamp(n, 1.0, static_cast<double>(rule_.order)));
+        cluster.proxies[k] = static_cast<std::uint8_t>(std::clamp(n, 1.0, static_cast<double>(kMostProxies)));
     }
     cluster.first_proxy = static_cast<std::uint32_t>(proxy_count_);
     proxy_count_ += cluster.proxy_count();

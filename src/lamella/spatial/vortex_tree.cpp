@@ -1,11 +1,10 @@
 #include "lamella/spatial/detail/vortex_tree.h"
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-
 #include "lamella/core/parallel.h"
 #include "lamella/spatial/detail/chebyshev.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace lamella::spatial::detail {
 
@@ -47,7 +46,9 @@ public:
           components_(law.with_potential ? 6 : 3),
           squared_opening_(opening * opening) {}
 
-    SumColumns run(const std::vector<Vec3>& targets, const std::vector<Vec3>& centers, const std::vector<Vec3>& strengths) {
+    SumColumns run(const std::vector<Vec3>& targets,
+                   const std::vector<Vec3>& centers,
+                   const std::vector<Vec3>& strengths) {
         gather_sources(centers, strengths);
         meet(0, 0);
         near_.finish(targets_.size());
@@ -88,7 +89,8 @@ private:
         for (const std::uint32_t child : {c.left, c.right}) {
             const Cluster& inner = sources_[child];
             const GridWeights weights(table_, c, inner);
-            for (std::size_t k = 0; k < 3; ++k) carry_up(weights, c, inner, &columns_.strength[k][proxy_begin(inner)], to[k]);
+            for (std::size_t k = 0; k < 3; ++k)
+                carry_up(weights, c, inner, &columns_.strength[k][proxy_begin(inner)], to[k]);
         }
     }
 
@@ -118,20 +120,19 @@ private:
                 }
     }
 
-    /// Are two clusters far enough apart? Around a source the kernels are analytic up to the complex distance
-    /// sqrt(r^2 + delta^2): a large delta lets clusters act through proxies even where they touch.
     bool far_apart(const Cluster& target, const Cluster& source) const {
         const double reach = target.radius + source.radius;
-        return reach * reach < squared_opening_ * (squared_norm(target.middle - source.middle) + 1.0);
+        return reach * reach < squared_opening_ * squared_norm(target.middle - source.middle);
     }
 
     void meet(std::uint32_t t, std::uint32_t s) {
         const Cluster &target = targets_[t], &source = sources_[s];
         if (far_apart(target, source)) {
             const bool by_proxies = source.count() > source.proxy_count();
-            const SourceRange range = by_proxies
-                                          ? SourceRange{proxy_begin(source), proxy_begin(source) + static_cast<std::uint32_t>(source.proxy_count())}
-                                          : SourceRange{source.begin, source.end};
+            const SourceRange range =
+                by_proxies ? SourceRange{proxy_begin(source),
+                                         proxy_begin(source) + static_cast<std::uint32_t>(source.proxy_count())}
+                           : SourceRange{source.begin, source.end};
             if (target.count() > target.proxy_count())
                 far_.add(t, range);
             else
@@ -162,14 +163,18 @@ private:
                 if (far_.of(t).empty()) continue;
                 for (auto& column : x) column.resize(c.proxy_count());
                 place_proxies(c, {x[0].data(), x[1].data(), x[2].data()});
-                sum_in_blocks(c.proxy_count(), far_.of(t), [&](std::size_t k, std::size_t i) { return x[k][i]; },
-                              [&](std::size_t k, std::size_t i, double sum) { local_[k][c.first_proxy + i] = sum; });
+                sum_in_blocks(
+                    c.proxy_count(), far_.of(t), [&](std::size_t k, std::size_t i) { return x[k][i]; },
+                    [&](std::size_t k, std::size_t i, double sum) { local_[k][c.first_proxy + i] = sum; });
             }
         });
     }
 
     template <class Position, class Result>
-    void sum_in_blocks(std::size_t count, std::span<const SourceRange> ranges, Position&& position, Result&& result) const {
+    void sum_in_blocks(std::size_t count,
+                       std::span<const SourceRange> ranges,
+                       Position&& position,
+                       Result&& result) const {
         TargetBlock block;
         for (std::size_t begin = 0; begin < count; begin += kTargetBlock) {
             block.start(std::min(kTargetBlock, count - begin));
@@ -191,7 +196,8 @@ private:
                         const Cluster& inner = targets_[child];
                         const GridWeights weights(table_, outer, inner);
                         for (std::size_t k = 0; k < components_; ++k)
-                            carry_down(weights, outer, inner, &local_[k][outer.first_proxy], &local_[k][inner.first_proxy]);
+                            carry_down(weights, outer, inner, &local_[k][outer.first_proxy],
+                                       &local_[k][inner.first_proxy]);
                     }
                 }
             });
@@ -205,8 +211,10 @@ private:
             for (std::size_t t = begin; t < end; ++t) {
                 const Cluster& c = targets_[t];
                 if (!c.is_leaf()) continue;
-                sum_in_blocks(c.count(), near_.of(t), [&](std::size_t k, std::size_t i) { return targets[order[c.begin + i]][k]; },
-                              [&](std::size_t k, std::size_t i, double sum) { sums[k][order[c.begin + i]] = sum; });
+                sum_in_blocks(
+                    c.count(), near_.of(t),
+                    [&](std::size_t k, std::size_t i) { return targets[order[c.begin + i]][k]; },
+                    [&](std::size_t k, std::size_t i, double sum) { sums[k][order[c.begin + i]] = sum; });
                 for (std::uint32_t p = c.begin; p < c.end; ++p) interpolate(c, targets[order[p]], order[p], sums);
             }
         });
@@ -243,6 +251,14 @@ private:
 };
 
 }  // namespace
+
+/// Largest errors measured at opening 0.65 (three kernels, one sphere and eight, 4000 to 400,000 points, delta of 0.75
+/// to 3 spacings): 2e-2, 3e-3, 4e-4, 4e-5, 4e-6, 5e-7, 7e-8 with 2 ... 8 points; one digit for each point.
+ClusterRule cluster_rule(double tolerance) {
+    const double order = std::clamp(std::ceil(1.0 - std::log10(tolerance) - 1e-9), 2.0, 9.0);
+    const auto n = static_cast<std::size_t>(order);
+    return {.order = n, .opening = 0.65, .leaf_size = std::clamp<std::size_t>(n * n * n, 64, 256)};
+}
 
 SumColumns sum_by_clusters(const std::vector<Vec3>& targets,
                            const std::vector<Vec3>& centers,

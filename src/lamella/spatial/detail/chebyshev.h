@@ -1,12 +1,12 @@
 #pragma once
 
+#include "lamella/spatial/detail/cluster_tree.h"
+
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <vector>
-
-#include "lamella/spatial/detail/cluster_tree.h"
 
 // Interpolation on a grid of Chebyshev points in the box of a cluster. Along one axis of n points
 //     x_i = cos((2 i + 1) pi / (2 n)),   L_i(x) = 1/n + 2/n sum_{m=1}^{n-1} T_m(x_i) T_m(x).
@@ -19,10 +19,12 @@ public:
     ChebyshevTable() {
         for (std::size_t n = 1; n <= kMostProxies; ++n)
             for (std::size_t i = 0; i < n; ++i) {
-                const double angle = (2.0 * static_cast<double>(i) + 1.0) * std::numbers::pi / (2.0 * static_cast<double>(n));
+                const double angle =
+                    (2.0 * static_cast<double>(i) + 1.0) * std::numbers::pi / (2.0 * static_cast<double>(n));
                 point_[n][i] = std::cos(angle);
                 for (std::size_t m = 0; m < n; ++m)
-                    matrix_[n][m][i] = (m == 0 ? 1.0 : 2.0) / static_cast<double>(n) * std::cos(static_cast<double>(m) * angle);
+                    matrix_[n][m][i] =
+                        (m == 0 ? 1.0 : 2.0) / static_cast<double>(n) * std::cos(static_cast<double>(m) * angle);
             }
     }
 
@@ -69,14 +71,15 @@ struct GridWeights {
             for (std::size_t j = 0; j < inner.proxies[k]; ++j) {
                 double column[kMostProxies];
                 const double x = proxy_coordinate(table, inner, k, j);
-                table.weights(outer.proxies[k], outer.half[k] > 0.0 ? (x - outer.middle[k]) / outer.half[k] : 0.0, column);
+                table.weights(outer.proxies[k], outer.half[k] > 0.0 ? (x - outer.middle[k]) / outer.half[k] : 0.0,
+                              column);
                 for (std::size_t i = 0; i < outer.proxies[k]; ++i) w[k][i][j] = column[i];
             }
     }
 };
 
-/// Carries strengths at the proxies of `inner` up to those of `outer` (added), or values at the proxies of `outer` down to
-/// those of `inner` (added): one axis after the other.
+/// Carries strengths at the proxies of `inner` up to those of `outer` (added), or values at the proxies of `outer` down
+/// to those of `inner` (added): one axis after the other.
 void carry_up(const GridWeights& weights, const Cluster& outer, const Cluster& inner, const double* from, double* to);
 void carry_down(const GridWeights& weights, const Cluster& outer, const Cluster& inner, const double* from, double* to);
 

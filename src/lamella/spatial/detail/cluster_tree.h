@@ -1,11 +1,11 @@
 #pragma once
 
+#include "lamella/core/vec.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
-
-#include "lamella/core/vec.h"
 
 namespace lamella::spatial::detail {
 
@@ -18,8 +18,8 @@ struct ClusterRule {
     std::size_t leaf_size;  ///< more points than this are split
 };
 
-/// A cluster: points [begin, end) of the tree's order, their tight box, and a grid of Chebyshev points in it that stands
-/// for them (its proxies). Thin boxes need fewer points across.
+/// A cluster: points [begin, end) of the tree's order, their tight box, and a grid of Chebyshev points in it that
+/// stands for them (its proxies). Thin boxes need fewer points across.
 struct Cluster {
     Vec3 middle, half;  ///< of the box
     double radius;      ///< half its diagonal

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "lamella/spatial/detail/cluster_tree.h"
 #include "lamella/spatial/detail/pair_block.h"
+
+#include <span>
+#include <vector>
 
 namespace lamella::spatial::detail {
 
