@@ -252,8 +252,9 @@ private:
 
 }  // namespace
 
-/// Largest errors measured at opening 0.65 (three kernels, one sphere and eight, 4000 to 400,000 points, delta of 0.75
-/// to 3 spacings): 2e-2, 3e-3, 4e-4, 4e-5, 4e-6, 5e-7, 7e-8 with 2 ... 8 points; one digit for each point.
+/// One digit for each point. Largest errors of the velocity measured at this opening (a sphere and eight, 20,000 to
+/// 400,000 points, delta of 1.5 spacings): 2e-2, 2e-3, 4e-4, 5e-5, 5e-6, 2e-7, 4e-8, 4e-9 with 2 ... 9 points along a
+/// cube.
 ClusterRule cluster_rule(double tolerance) {
     const double order = std::clamp(std::ceil(1.0 - std::log10(tolerance) - 1e-9), 2.0, 9.0);
     const auto n = static_cast<std::size_t>(order);
