@@ -69,6 +69,7 @@ TEST(VortexTree, MeetsItsToleranceOnSpheresAndClustersOfThem) {
                 vortex_sum(some, e.centers, e.strengths, by(Method::kDirect, delta, 1e-5, kernel), true);
             double coarser = 1.0;
             for (const double tolerance : {1e-1, 1e-3, 1e-4, 1e-5, 1e-6}) {
+                if (kernel != VortexKernel::kK3 && tolerance != 1e-4) continue;  // one sample of the others
                 const VortexField found =
                     vortex_sum(e.centers, e.centers, e.strengths, by(Method::kTree, delta, tolerance, kernel), true);
                 const double error = relative_error(found.velocity, exact.velocity, 29);
