@@ -50,7 +50,7 @@ LIBRARIES = {
 }
 
 # Standard C++ headers have no dot, and but one a slash; the C and POSIX ones that the library may use are named.
-SYSTEM = re.compile(r"^(\w+|experimental/simd|(sys|sanitizer)/\w+\.h|(fcntl|unistd|dirent|signal|spawn|cuda_runtime)\.h)$")
+SYSTEM = re.compile(r"^(\w+|experimental/simd|(sys|sanitizer)/\w+\.h|(fcntl|unistd|dirent|signal|spawn|cuda_runtime|immintrin)\.h)$")
 
 # The library never prints, exits or aborts: the caller owns stdout, stderr and the process. (A failed assertion does.)
 PROCESS = re.compile(r"\bstd::(cout|cerr|clog|exit|abort|quick_exit|print|printf|puts)\b|\bfmt::print\b|\bspdlog::")

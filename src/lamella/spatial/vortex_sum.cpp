@@ -2,7 +2,8 @@
 
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
-#include "lamella/spatial/detail/pair_block.h"
+#include "lamella/spatial/bvh.h"
+#include "lamella/spatial/detail/vortex_tree.h"
 
 #include <fmt/format.h>
 
@@ -15,10 +16,12 @@ namespace lamella::spatial {
 
 namespace {
 
+using detail::ClusterRule;
 using detail::kTargetBlock;
 using detail::PairLaw;
 using detail::SourceColumns;
 using detail::SourceRange;
+using detail::SumColumns;
 using detail::TargetBlock;
 
 constexpr double kWidestSpread = 1e15;  // in units of delta: beyond it doubles cannot tell points delta apart
@@ -50,13 +53,9 @@ void check(std::span<const Vec3> targets,
     check_finite(strengths, "strengths");
 }
 
-struct Box {
-    Vec3 low{{1.0, 1.0, 1.0}}, high{{-1.0, -1.0, -1.0}};
-};
-
-Box enclosing(std::span<const Vec3> a, std::span<const Vec3> b) {
+Bounds enclosing(std::span<const Vec3> a, std::span<const Vec3> b) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    Box box{{{kInfinity, kInfinity, kInfinity}}, {{-kInfinity, -kInfinity, -kInfinity}}};
+    Bounds box{{{kInfinity, kInfinity, kInfinity}}, {{-kInfinity, -kInfinity, -kInfinity}}};
     for (const std::span<const Vec3> points : {a, b})
         for (const Vec3& x : points)
             for (std::size_t k = 0; k < 3; ++k) {
@@ -70,15 +69,13 @@ Box enclosing(std::span<const Vec3> a, std::span<const Vec3> b) {
 struct Scale {
     Vec3 middle;
     double delta, strength, spread;
-
-    double length(double x, std::size_t k) const { return (x - middle[k]) / delta; }
 };
 
 Scale scale_of(std::span<const Vec3> targets,
                std::span<const Vec3> centers,
                std::span<const Vec3> strengths,
                double delta) {
-    const Box box = enclosing(targets, centers);
+    const Bounds box = enclosing(targets, centers);
     double strength = 0.0;
     for (const Vec3& g : strengths) strength = std::max({strength, std::abs(g[0]), std::abs(g[1]), std::abs(g[2])});
     double spread = 0.0;
@@ -90,40 +87,63 @@ Scale scale_of(std::span<const Vec3> targets,
     return {0.5 * (box.low + box.high), delta, strength, spread};
 }
 
-SourceColumns scaled_sources(std::span<const Vec3> centers, std::span<const Vec3> strengths, const Scale& scale) {
+std::vector<Vec3> scaled_points(std::span<const Vec3> points, const Scale& scale) {
+    std::vector<Vec3> scaled(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k) scaled[i][k] = (points[i][k] - scale.middle[k]) / scale.delta;
+    return scaled;
+}
+
+std::vector<Vec3> scaled_strengths(std::span<const Vec3> strengths, const Scale& scale) {
+    std::vector<Vec3> scaled(strengths.begin(), strengths.end());
+    for (Vec3& g : scaled)
+        for (std::size_t k = 0; k < 3; ++k) g[k] /= scale.strength;
+    return scaled;
+}
+
+SumColumns sum_directly(const std::vector<Vec3>& targets,
+                        const std::vector<Vec3>& centers,
+                        const std::vector<Vec3>& strengths,
+                        const PairLaw& law) {
     SourceColumns sources;
     sources.resize(centers.size());
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t i = 0; i < centers.size(); ++i) {
-            sources.position[k][i] = scale.length(centers[i][k], k);
-            sources.strength[k][i] = strengths[i][k] / scale.strength;
+            sources.position[k][i] = centers[i][k];
+            sources.strength[k][i] = strengths[i][k];
         }
-    return sources;
-}
-
-/// Puts the sums of a block, with units, where they belong.
-void store(const TargetBlock& block, std::size_t slot, std::size_t target, const Scale& scale, VortexField& field) {
-    const double potential_unit = scale.strength / (4.0 * std::numbers::pi * scale.delta);
-    const double velocity_unit = potential_unit / scale.delta;
-    for (std::size_t k = 0; k < 3; ++k) field.velocity[target][k] = velocity_unit * block.sum[k][slot];
-    if (field.potential.empty()) return;
-    for (std::size_t k = 0; k < 3; ++k) field.potential[target][k] = potential_unit * block.sum[3 + k][slot];
-}
-
-void sum_directly(std::span<const Vec3> targets,
-                  const SourceColumns& sources,
-                  const PairLaw& law,
-                  const Scale& scale,
-                  VortexField& field) {
-    const SourceRange all{0, static_cast<std::uint32_t>(sources.position[0].size())};
+    const SourceRange all{0, static_cast<std::uint32_t>(centers.size())};
+    SumColumns sums;
+    const std::size_t components = law.with_potential ? 6 : 3;
+    for (std::size_t k = 0; k < components; ++k) sums[k].resize(targets.size());
     parallel_blocks(targets.size(), kTargetBlock, [&](std::size_t begin, std::size_t end) {
         TargetBlock block;
         block.start(end - begin);
-        for (std::size_t i = begin; i < end; ++i)
-            for (std::size_t k = 0; k < 3; ++k) block.position[k][i - begin] = scale.length(targets[i][k], k);
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t i = begin; i < end; ++i) block.position[k][i - begin] = targets[i][k];
         add_pairs(law, block, sources, {&all, 1});
-        for (std::size_t i = begin; i < end; ++i) store(block, i - begin, i, scale, field);
+        for (std::size_t k = 0; k < components; ++k) std::copy_n(block.sum[k], block.count, &sums[k][begin]);
     });
+    return sums;
+}
+
+/// The tree costs about as much per target as so many pairs, measured on spheres with delta of 1.5 spacings.
+bool tree_is_faster(std::size_t targets, std::size_t sources, const ClusterRule& rule, bool single) {
+    const double pairs = (single ? 350.0 : 250.0) * static_cast<double>(rule.order * rule.order);
+    return static_cast<double>(std::min(targets, sources)) > pairs;
+}
+
+VortexField with_units(const SumColumns& sums, const Scale& scale, bool with_potential) {
+    const std::size_t count = sums[0].size();
+    const double potential_unit = scale.strength / (4.0 * std::numbers::pi * scale.delta);
+    const double velocity_unit = potential_unit / scale.delta;
+    VortexField field{std::vector<Vec3>(count), std::vector<Vec3>(with_potential ? count : 0)};
+    for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t i = 0; i < count; ++i) field.velocity[i][k] = velocity_unit * sums[k][i];
+        for (std::size_t i = 0; i < field.potential.size(); ++i)
+            field.potential[i][k] = potential_unit * sums[3 + k][i];
+    }
+    return field;
 }
 
 }  // namespace
@@ -134,14 +154,25 @@ VortexField vortex_sum(std::span<const Vec3> targets,
                        const VortexSumOptions& options,
                        bool with_potential) {
     check(targets, centers, strengths, options);
-    VortexField field{std::vector<Vec3>(targets.size()), std::vector<Vec3>(with_potential ? targets.size() : 0)};
-    if (targets.empty() || centers.empty()) return field;
+    const VortexField zero{std::vector<Vec3>(targets.size()), std::vector<Vec3>(with_potential ? targets.size() : 0)};
+    if (targets.empty() || centers.empty()) return zero;
     const Scale scale = scale_of(targets, centers, strengths, options.delta);
-    if (scale.strength == 0.0) return field;
+    if (scale.strength == 0.0) return zero;
+
+    using Method = VortexSumOptions::Method;
     const bool single = options.precision == VortexSumOptions::Precision::kSingle && scale.spread <= kWidestSingle;
     const PairLaw law{options.kernel, with_potential, single};
-    sum_directly(targets, scaled_sources(centers, strengths, scale), law, scale, field);
-    return field;
+    const ClusterRule rule = detail::cluster_rule(options.tolerance);
+    const bool tree = options.method == Method::kTree ||
+                      (options.method == Method::kAuto && tree_is_faster(targets.size(), centers.size(), rule, single));
+    const bool same = targets.data() == centers.data() && targets.size() == centers.size();
+    const std::vector<Vec3> sources = scaled_points(centers, scale);
+    const std::vector<Vec3> points = same ? std::vector<Vec3>{} : scaled_points(targets, scale);
+    const std::vector<Vec3>& wanted = same ? sources : points;
+    const std::vector<Vec3> weights = scaled_strengths(strengths, scale);
+    const SumColumns sums = tree ? detail::sum_by_clusters(wanted, sources, weights, same, law, rule)
+                                 : sum_directly(wanted, sources, weights, law);
+    return with_units(sums, scale, with_potential);
 }
 
 }  // namespace lamella::spatial
