@@ -54,8 +54,16 @@ struct Surface {
     std::vector<std::array<std::int32_t, 2>> regions;  ///< per triangle: on its back and on its front side
     std::vector<Field> vertex_fields;
     std::vector<Field> face_fields;
+    /// What is known of each region, in the order of their numbers; all of one length, or none. Measures look for
+    /// `closed` (1: a bubble, whose films close it in), `target_volume` [m^3] (what its gas fills at rest) and
+    /// `pressure` [Pa] (above region 0).
+    std::vector<Field> region_fields;
 
     bool empty() const { return triangles.empty(); }
+    const Field* find_of_vertices(std::string_view name) const;
+    const Field* find_of_regions(std::string_view name) const;
+    /// Regions that region_fields tell of, 0 without any.
+    std::size_t regions_described() const;
 };
 
 /// What can be seen of a simulation at one time. Everything downstream of a solver (files, measures, plots,

@@ -69,6 +69,15 @@ sim::Frame EquilibriumSolver::frame() const {
         jump.values.push_back(pressure(face.back) - pressure(face.front));
     }
     surface.face_fields.push_back(std::move(jump));
+    sim::Field closed{"closed", "-", 1, true, {}}, target{"target_volume", "m^3", 1, false, {}},
+        above{"pressure", "Pa", 1, false, {}};
+    for (const mesh::RegionId r : mesh.regions.ids()) {
+        const bool bubble = mesh.regions[r].kind == RegionKind::kClosed;
+        closed.values.push_back(bubble ? 1.0 : 0.0);
+        target.values.push_back(bubble ? mesh.regions[r].target_volume : 0.0);
+        above.values.push_back(bubble ? pressure(r) : 0.0);
+    }
+    surface.region_fields = {std::move(closed), std::move(target), std::move(above)};
     frame.scalars = scalars();
     return frame;
 }
