@@ -23,25 +23,29 @@ std::string film_name(const FilmMeasure& film) { return fmt::format("{}-{}", fil
 
 ordered_json number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
 
+/// How the curved angles were taken.
+std::string curved_method(bool patches) { return patches ? "quadratic" : "quadratic fit"; }
+
 ordered_json angles_object(const AngleMeasure& angles) {
     return {{"mean", number(kDegrees * angles.mean)},
             {"mean_error", number(kDegrees * angles.mean_error)},
             {"max_error", number(kDegrees * angles.max_error)}};
 }
 
-ordered_json both_methods(const AnglesByMethod& angles) {
-    ordered_json object{{"count", angles.quadratic.count}};
-    object.update(angles_object(angles.quadratic));
-    object["method"] = "quadratic";
+ordered_json both_methods(const AnglesByMethod& angles, bool patches) {
+    ordered_json object{{"count", angles.curved.count}};
+    object.update(angles_object(angles.curved));
+    object["method"] = curved_method(patches);
     object["flat"] = angles_object(angles.flat);
     return object;
 }
 
 constexpr char kAngleRow[] = "  {:<16} {:>8} {:>12} {:>12} {:>12}  {}\n";
 
-void angle_rows(std::string& text, const char* name, const AnglesByMethod& angles, const char* law) {
-    if (angles.quadratic.count == 0) return;
-    for (const auto& [method, a] : {std::pair{"quadratic", &angles.quadratic}, std::pair{"flat", &angles.flat}})
+void angle_rows(std::string& text, const char* name, const AnglesByMethod& angles, bool patches, const char* law) {
+    if (angles.curved.count == 0) return;
+    for (const auto& [method, a] :
+         {std::pair{curved_method(patches), &angles.curved}, std::pair{std::string("flat"), &angles.flat}})
         text += fmt::format(kAngleRow, name, a->count, number_text(kDegrees * a->mean),
                             number_text(kDegrees * a->mean_error), number_text(kDegrees * a->max_error),
                             fmt::format("{}, law {}", method, law));
@@ -80,8 +84,8 @@ void add_films(ordered_json& object, const FilmMeasures& films, std::optional<st
                                      {"pressure", number(r.pressure)},
                                      {"area", number(r.area)},
                                      {"centroid", {number(r.centroid[0]), number(r.centroid[1]), number(r.centroid[2])}}});
-    object["edge_angles"] = both_methods(films.edge_angles);
-    object["corner_angles"] = both_methods(films.corner_angles);
+    object["edge_angles"] = both_methods(films.edge_angles, films.has_patches);
+    object["corner_angles"] = both_methods(films.corner_angles, films.has_patches);
     object["film_curvature"] = std::move(curvatures);
     if (films.thickness)
         object["thickness"] = {{"min", number(films.thickness->min)},
@@ -98,8 +102,10 @@ void add_films(ordered_json& object, const FilmMeasures& films, std::optional<st
     object["methods"] = {{"total_area", "flat triangles"},
                          {"film_area", "flat triangles"},
                          {"regions", "flat triangles; pressures from the solver"},
-                         {"edge_angles", "quadratic: films fitted to the vertices near by; flat: triangles at the edge"},
-                         {"corner_angles", "quadratic: parabolas through three vertices; flat: first edges"},
+                         {"edge_angles", "quadratic: the solver's quadratic triangles; quadratic fit: films fitted to the vertices "
+                                         "near by; flat: triangles at the edge"},
+                         {"corner_angles", "quadratic: edges of the solver's quadratic triangles; quadratic fit: "
+                                           "parabolas through three vertices; flat: first edges"},
                          {"film_curvature", "mean: first variation of area; fit_radius: least squares over vertices"}};
 }
 
@@ -117,10 +123,10 @@ std::string film_table(const FilmMeasures& films, std::optional<std::size_t> int
                             number_text(films.thickness->deviation));
     bubble_rows(text, films);
     film_rows(text, films);
-    if (films.edge_angles.quadratic.count + films.corner_angles.quadratic.count == 0) return text;
+    if (films.edge_angles.curved.count + films.corner_angles.curved.count == 0) return text;
     text += "\n" + fmt::format(kAngleRow, "angles [deg]", "count", "mean", "mean error", "max error", "method");
-    angle_rows(text, "between films", films.edge_angles, "120");
-    angle_rows(text, "between lines", films.corner_angles, "109.471");
+    angle_rows(text, "between films", films.edge_angles, films.has_patches, "120");
+    angle_rows(text, "between lines", films.corner_angles, films.has_patches, "109.471");
     return text;
 }
 

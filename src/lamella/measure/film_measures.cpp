@@ -146,9 +146,8 @@ void measure_regions(const FilmMesh& films, const Films& gathered, const sim::Su
     }
 }
 
-AngleMeasure edge_angle_measure(const FoamMesh& mesh, mesh::AngleMethod method) {
-    const auto angles = mesh::triple_edge_angles(mesh, method);
-    if (angles.empty()) return {0, kNan, kNan, kNan};
+AngleMeasure edge_angle_measure(const std::vector<mesh::TripleEdgeAngles>& angles) {
+    if (angles.empty()) return {};
     const mesh::AngleDeviation off = mesh::deviation_from_plateau(angles);
     double mean = 0.0, length = 0.0;
     for (const mesh::TripleEdgeAngles& edge : angles) {
@@ -158,11 +157,10 @@ AngleMeasure edge_angle_measure(const FoamMesh& mesh, mesh::AngleMethod method) 
     return {angles.size(), mean / length, off.mean, off.largest};
 }
 
-AngleMeasure corner_angle_measure(const FoamMesh& mesh, mesh::AngleMethod method) {
-    auto angles = mesh::junction_angles(mesh, method);
+AngleMeasure corner_angle_measure(const FoamMesh& mesh, std::vector<mesh::JunctionAngles> angles) {
     // Lines that end on a wire do so at any angle.
     std::erase_if(angles, [&](const mesh::JunctionAngles& j) { return mesh.on_wire[j.vertex] != 0; });
-    if (angles.empty()) return {0, kNan, kNan, kNan};
+    if (angles.empty()) return {};
     const mesh::AngleDeviation off = mesh::deviation_from_plateau(angles);
     double mean = 0.0, count = 0.0;
     for (const mesh::JunctionAngles& junction : angles)
@@ -173,11 +171,32 @@ AngleMeasure corner_angle_measure(const FoamMesh& mesh, mesh::AngleMethod method
     return {angles.size(), mean / count, off.mean, off.largest};
 }
 
-template <class Measure>
-AnglesByMethod by_method(const FilmMesh& films, Measure&& measure) {
-    const AngleMeasure none{0, kNan, kNan, kNan};
-    if (!films.connected) return {none, none};
-    return {measure(films.mesh, mesh::AngleMethod::kFlat), measure(films.mesh, mesh::AngleMethod::kQuadratic)};
+using CurvedFaces = IdVector<FaceId, geometry::CurvedTriangle>;
+
+/// The frame's quadratic triangles, or none.
+CurvedFaces curved_faces(const sim::Surface& surface) {
+    CurvedFaces curved;
+    const sim::Field* nodes = surface.find_of_faces(sim::kCurvedNodes);
+    if (nodes == nullptr || nodes->components != 18 || nodes->values.size() != 18 * surface.triangles.size()) return curved;
+    for (std::size_t f = 0; f < surface.triangles.size(); ++f) {
+        geometry::CurvedTriangle triangle;
+        for (std::size_t i = 0; i < 18; ++i) triangle[i / 3][i % 3] = nodes->values[18 * f + i];
+        curved.push_back(triangle);
+    }
+    return curved;
+}
+
+void measure_angles(const FoamMesh& mesh, const sim::Surface& surface, FilmMeasures& out) {
+    using mesh::AngleMethod;
+    const CurvedFaces curved = curved_faces(surface);
+    out.has_patches = !curved.empty();
+    out.edge_angles.flat = edge_angle_measure(mesh::triple_edge_angles(mesh, AngleMethod::kFlat));
+    out.corner_angles.flat = corner_angle_measure(mesh, mesh::junction_angles(mesh, AngleMethod::kFlat));
+    out.edge_angles.curved = edge_angle_measure(out.has_patches ? mesh::triple_edge_angles(mesh, curved)
+                                                                : mesh::triple_edge_angles(mesh, AngleMethod::kQuadratic));
+    out.corner_angles.curved =
+        corner_angle_measure(mesh, out.has_patches ? mesh::junction_angles(mesh, curved)
+                                                   : mesh::junction_angles(mesh, AngleMethod::kQuadratic));
 }
 
 std::optional<ThicknessMeasure> measure_thickness(const FoamMesh& mesh, const sim::Surface& surface) {
@@ -214,8 +233,7 @@ std::optional<FilmMeasures> film_measures(const sim::Frame& frame) {
     out.total_area = mesh::total_area(films.mesh);
     out.films = measure_films(films, gathered);
     measure_regions(films, gathered, frame.surface, out);
-    out.edge_angles = by_method(films, edge_angle_measure);
-    out.corner_angles = by_method(films, corner_angle_measure);
+    if (films.connected) measure_angles(films.mesh, frame.surface, out);
     out.thickness = measure_thickness(films.mesh, frame.surface);
     out.mesh = {films.mesh.position.size(), films.mesh.faces.size(), mesh::edge_lengths(films.mesh).mean,
                 mesh::min_angle(films.mesh)};
@@ -238,12 +256,12 @@ std::vector<sim::Scalar> film_scalars(const FilmMeasures& films) {
         {"total_area", "m^2", films.total_area, "of all films, flat triangles"},
         {"gas_volume", "m^3", gas, "of all bubbles, flat triangles"},
         {"volume_error", "-", films.volume_error, "largest relative error of a bubble's volume"},
-        {"edge_angle_mean_error", "deg", kDegrees * films.edge_angles.quadratic.mean_error,
-         "from 120 degrees between films, curved through the vertices near by"},
-        {"edge_angle_max_error", "deg", kDegrees * films.edge_angles.quadratic.max_error, "the largest"},
-        {"corner_angle_mean_error", "deg", kDegrees * films.corner_angles.quadratic.mean_error,
-         "from 109.47 degrees between triple lines, curved"},
-        {"corner_angle_max_error", "deg", kDegrees * films.corner_angles.quadratic.max_error, "the largest"},
+        {"edge_angle_mean_error", "deg", kDegrees * films.edge_angles.curved.mean_error,
+         "from 120 degrees, between curved films"},
+        {"edge_angle_max_error", "deg", kDegrees * films.edge_angles.curved.max_error, "the largest"},
+        {"corner_angle_mean_error", "deg", kDegrees * films.corner_angles.curved.mean_error,
+         "from 109.47 degrees, between curved triple lines"},
+        {"corner_angle_max_error", "deg", kDegrees * films.corner_angles.curved.max_error, "the largest"},
         {"vertices", "-", static_cast<double>(films.mesh.vertices), "of the films"},
         {"faces", "-", static_cast<double>(films.mesh.faces), "triangles"},
         {"mean_edge", "m", films.mesh.mean_edge, "mean length of the triangles' edges"},

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -29,15 +30,17 @@ struct RegionMeasure {
 
 /// Angles against the law that holds at rest [rad]; NaN without any.
 struct AngleMeasure {
-    std::size_t count = 0;    ///< of triple edges with three angles each, or of junctions with six
-    double mean = 0.0;        ///< of the angles themselves
-    double mean_error = 0.0;  ///< of |angle - law|, between films weighted with the edges' lengths
-    double max_error = 0.0;
+    static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    std::size_t count = 0;      ///< of triple edges with three angles each, or of junctions with six
+    double mean = kNone;        ///< of the angles themselves
+    double mean_error = kNone;  ///< of |angle - law|, between films weighted with the edges' lengths
+    double max_error = kNone;
 };
 
-/// The angles from flat triangles and straight edges, off by O(h) even at rest, and from curved films and lines.
+/// The angles from flat triangles and straight edges, off by O(h) even at rest, and from curved films and lines: from
+/// the frame's own quadratic triangles (sim::kCurvedNodes) if it has them, otherwise fitted to the vertices near by.
 struct AnglesByMethod {
-    AngleMeasure flat, quadratic;
+    AngleMeasure flat, curved;
 };
 
 /// Weighted with the films' area [m].
@@ -59,6 +62,7 @@ struct FilmMeasures {
     std::vector<RegionMeasure> regions;  ///< the closed ones, ordered by number
     double volume_error = 0.0;           ///< largest |volume - target| / target; NaN where the frame has no targets
     AnglesByMethod edge_angles;          ///< between films along triple lines, law: 120 degrees
+    bool has_patches = false;            ///< the curved angles are those of the frame's quadratic triangles
     AnglesByMethod corner_angles;        ///< between triple lines at junctions, law: 109.47 degrees
     std::optional<ThicknessMeasure> thickness;  ///< where the vertices have the field `thickness`
     MeshMeasure mesh;

@@ -26,7 +26,7 @@ void check(const sim::Surface& surface) {
                 throw InputError(fmt::format("triangle {} refers to vertex {} of {}", f, v, surface.position.size()));
         if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) throw InputError(fmt::format("triangle {} has a vertex twice", f));
         const auto& [back, front] = surface.regions[f];
-        if (back < 0 || front < 0 || back == front)
+        if (back < 0 || front < 0)
             throw InputError(fmt::format("triangle {} lies between regions {} and {}", f, back, front));
     }
     for (std::size_t v = 0; v < surface.position.size(); ++v)

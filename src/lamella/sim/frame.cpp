@@ -16,6 +16,7 @@ auto find_named(const Items& items, std::string_view name) -> decltype(items.dat
 const Field* Points::find(std::string_view name) const { return find_named(fields, name); }
 
 const Field* Surface::find_of_vertices(std::string_view name) const { return find_named(vertex_fields, name); }
+const Field* Surface::find_of_faces(std::string_view name) const { return find_named(face_fields, name); }
 const Field* Surface::find_of_regions(std::string_view name) const { return find_named(region_fields, name); }
 
 std::size_t Surface::regions_described() const {

@@ -47,6 +47,10 @@ struct Points {
     const Field* find(std::string_view name) const;
 };
 
+/// The face field with 18 components of a solver that knows its films better than flat triangles do: the quadratic
+/// triangle that each face stands for, its corners, then its points between corners 0-1, 1-2 and 2-0 [m].
+inline constexpr const char* kCurvedNodes = "curved_nodes";
+
 /// Triangles, each between two regions of gas; region 0 is the outside.
 struct Surface {
     std::vector<Vec3> position;
@@ -61,6 +65,7 @@ struct Surface {
 
     bool empty() const { return triangles.empty(); }
     const Field* find_of_vertices(std::string_view name) const;
+    const Field* find_of_faces(std::string_view name) const;
     const Field* find_of_regions(std::string_view name) const;
     /// Regions that region_fields tell of, 0 without any.
     std::size_t regions_described() const;

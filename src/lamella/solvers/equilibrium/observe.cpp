@@ -69,6 +69,12 @@ sim::Frame EquilibriumSolver::frame() const {
         jump.values.push_back(pressure(face.back) - pressure(face.front));
     }
     surface.face_fields.push_back(std::move(jump));
+    if (answer_ && !answer_->curved.empty()) {
+        sim::Field nodes{sim::kCurvedNodes, "m", 18, false, {}};
+        for (const geometry::CurvedTriangle& patch : answer_->curved)
+            for (const Vec3& x : patch) nodes.values.insert(nodes.values.end(), {x[0], x[1], x[2]});
+        surface.face_fields.push_back(std::move(nodes));
+    }
     sim::Field closed{"closed", "-", 1, true, {}}, target{"target_volume", "m^3", 1, false, {}},
         above{"pressure", "Pa", 1, false, {}};
     for (const mesh::RegionId r : mesh.regions.ids()) {

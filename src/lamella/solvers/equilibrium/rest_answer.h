@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lamella/geometry/curved_triangle.h"
 #include "lamella/mesh/angles.h"
 #include "lamella/mesh/foam_mesh.h"
 #include "lamella/solvers/equilibrium/newton.h"
@@ -27,6 +28,7 @@ struct RestAnswer {
     mesh::AngleDeviation film_angles;      ///< from 120 degrees, on the quadratic patches
     mesh::AngleDeviation junction_angles;  ///< from 109.47 degrees
     std::size_t triple_edges = 0, junctions = 0;
+    std::vector<geometry::CurvedTriangle> curved;  ///< the quadratic patch of each face
 
     /// A minimum: no unstable mode and nothing that could part.
     bool stable() const { return converged && index == 0 && irregular_vertices == 0; }
