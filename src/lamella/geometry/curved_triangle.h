@@ -19,8 +19,8 @@ using CurvedTriangle = std::array<Vec3, 6>;
 /// less its part along x_h - x_t, the tangent of the edge's parabola at its middle.
 Vec3 edge_conormal(const CurvedTriangle& x, std::size_t opposite);
 
-/// Tangent, of any length, at the first of the points of a curve: of the polynomial through all of them over the length of
-/// their chords. At least two points, no two in a row at the same place.
-Vec3 end_tangent(std::span<const Vec3> points);
+/// Tangent at the first of the points of a curve: of the polynomial over the length of their chords that fits all of them
+/// best, through them if the degree allows. At least two points, no two in a row at the same place.
+Vec3 end_tangent(std::span<const Vec3> points, std::size_t degree);
 
 }  // namespace lamella::geometry

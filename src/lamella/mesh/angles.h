@@ -50,7 +50,7 @@ struct JunctionAngles {
 std::vector<JunctionAngles> junction_angles(const FoamMesh& mesh, AngleMethod method);
 
 /// The same from quadratic triangles, one for each face: films at the middle of each edge, lines at their junctions, along
-/// the curve through the nodes of their first two edges. Where the triangles come from a solution of that order, the
+/// the cubic that fits the nodes of their first two edges best. Where the triangles come from a solution of that order, the
 /// angles are much closer than with kQuadratic.
 std::vector<TripleEdgeAngles> triple_edge_angles(const FoamMesh& mesh,
                                                  const IdVector<FaceId, geometry::CurvedTriangle>& curved);

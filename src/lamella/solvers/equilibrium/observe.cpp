@@ -77,11 +77,12 @@ sim::Frame EquilibriumSolver::frame() const {
     }
     sim::Field closed{"closed", "-", 1, true, {}}, target{"target_volume", "m^3", 1, false, {}},
         above{"pressure", "Pa", 1, false, {}};
+    const bool pressure_known = answer_ || !relaxation_->pressure().empty();
     for (const mesh::RegionId r : mesh.regions.ids()) {
         const bool bubble = mesh.regions[r].kind == RegionKind::kClosed;
         closed.values.push_back(bubble ? 1.0 : 0.0);
         target.values.push_back(bubble ? mesh.regions[r].target_volume : 0.0);
-        above.values.push_back(bubble ? pressure(r) : 0.0);
+        above.values.push_back(!bubble ? 0.0 : pressure_known ? pressure(r) : std::numeric_limits<double>::quiet_NaN());
     }
     surface.region_fields = {std::move(closed), std::move(target), std::move(above)};
     frame.scalars = scalars();
@@ -105,6 +106,8 @@ std::vector<sim::Scalar> EquilibriumSolver::scalars() const {
         {"polyhedral_area", "m^2", flat, "of the flat triangles"},
         {"area", "m^2", at_rest([](const RestAnswer& a) { return a.area; }),
          "of curved triangles at rest, weighted with the films' tensions"},
+        {"estimated_area", "m^2", at_rest([](const RestAnswer& a) { return a.estimated_area; }),
+         "the same after one Newton step only"},
         {"surface_energy", "J", tension * at_rest([](const RestAnswer& a) { return a.area; }), "film tension * area"},
         {"volume_error", "-", worst_volume_error(mesh), "largest relative error of a bubble's volume"},
         {"virial", "-", at_rest([](const RestAnswer& a) { return a.virial; }),

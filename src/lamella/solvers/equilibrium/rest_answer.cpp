@@ -3,6 +3,7 @@
 #include "lamella/geometry/curved_triangle.h"
 #include "lamella/mesh/edge_faces.h"
 #include "lamella/mesh/plateau_faults.h"
+#include "lamella/mesh/quality.h"
 #include "lamella/mesh/subdivide.h"
 #include "lamella/solvers/equilibrium/rest_system.h"
 #include "lamella/solvers/equilibrium/stability.h"
@@ -19,6 +20,21 @@ double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cros
 /// Direction in which a patch leaves the middle of its edge, perpendicular to the edge.
 Vec3 conormal(const Patches& patches, const mesh::EdgeUse& use) {
     return geometry::edge_conormal(patches.corners(index(use.face)), use.opposite);
+}
+
+/// A + sum p (target - V): the Lagrangian, stationary at rest, so that its error is quadratic in that of the shape.
+double corrected_area(const RestSystem& system, const std::vector<double>& pressure) {
+    const Balance balance = system.balance(false);
+    double area = balance.area;
+    for (std::size_t r = 0; r < pressure.size(); ++r) area += pressure[r] * balance.missing[r];
+    return area;
+}
+
+/// One step from an uneven mesh may lead anywhere.
+bool is_trusted(double estimate, const mesh::FoamMesh& mesh, double polyhedral_area) {
+    constexpr double kSmallestAngle = 15.0 * 3.14159265358979323846 / 180.0;
+    constexpr double kMostChange = 0.01;  // of the area: flat faces are closer than that on every mesh of use
+    return mesh::min_angle(mesh) > kSmallestAngle && std::abs(estimate / polyhedral_area - 1.0) < kMostChange;
 }
 
 }  // namespace
@@ -71,9 +87,10 @@ RestAnswer rest_answer(const mesh::FoamMesh& mesh,
     constexpr double kTolerance = 1e-10;
     constexpr int kMostSteps = 20;
     answer.converged = newton.solve(kTolerance, 1);
-    answer.quick_area = system.balance(false).area;
+    const double estimate = corrected_area(system, newton.pressure());
     if (!answer.converged) answer.converged = newton.solve(kTolerance, kMostSteps);
     answer.area = system.balance(false).area;
+    answer.estimated_area = is_trusted(estimate, mesh, answer.polyhedral_area) ? estimate : answer.area;
     answer.residual = newton.last().residual;
     answer.index = newton.last().index;
     answer.pressure.assign(mesh.regions.size(), 0.0);
