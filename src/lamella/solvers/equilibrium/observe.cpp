@@ -133,6 +133,7 @@ std::vector<sim::Scalar> EquilibriumSolver::scalars() const {
         {"faces", "-", static_cast<double>(mesh.faces.size()), "triangles"},
         {"min_angle", "deg", kDegrees * mesh::min_angle(mesh), "smallest angle of a triangle"},
         {"steps", "-", static_cast<double>(steps_), "taken"},
+        {"iterations", "-", static_cast<double>(relaxation_->iterations()), "of the flow and of Newton's method"},
     };
 }
 
