@@ -46,6 +46,7 @@ const std::vector<SpeedCase>& cases() {
         {"cluster-10", {{2836, 2.534}, {11344, 14.666}}},
         {"cluster-13", {{3292, 3.042}, {13168, 21.308}}},
         {"frame-tetrahedron", {{96, 0.039}, {384, 0.102}, {1536, 0.298}}},
+        {"frame-cube", {{640, 0.237}}},
         {"catenoid-0.4", {{384, 0.115}, {1536, 0.326}, {6144, 1.443}}},
         {"catenoid-0.8", {{384, 0.12}, {1536, 0.345}, {6144, 1.415}}},
         {"catenoid-1.3", {{384, 0.12}, {1536, 0.33}, {6144, 1.47}}},
@@ -72,15 +73,18 @@ TEST(EquilibriumSpeed, IsAtLeastThatOfTheSurfaceEvolverForEveryReferenceCase) {
     std::printf("%-26s %7s %12s %14s %7s\n", "scene", "faces", "CPU s", "Evolver CPU s", "ratio");
     for (const SpeedCase& c : cases())
         for (const char* size : {"-small", ""}) {
-            // Other work on the machine can only add to the time: the least of three counts.
+            const auto evolver_for = [&](double f) { return evolver_seconds(c.evolver, f); };
+            // Other work on the machine can only add to the time: the least of three counts, where it matters.
+            constexpr double kClearlyFaster = 0.5;
             double best = std::numeric_limits<double>::infinity();
             double faces = 0.0;
-            for (int run = 0; run < 3; ++run) {
+            for (int run = 0; run < 3 && (run == 0 || best > kClearlyFaster * evolver_for(faces)); ++run) {
                 const double before = cpu_seconds();
-                faces = static_cast<double>(rest_of(c.scene + size).faces);
+                // Without the lowest eigenvalue, which the Evolver did not look for either.
+                faces = static_cast<double>(rest_of(c.scene + size, {"equilibrium.eigenvalue=false"}).faces);
                 best = std::min(best, cpu_seconds() - before);
             }
-            const double evolver = evolver_seconds(c.evolver, faces);
+            const double evolver = evolver_for(faces);
             std::printf("%-26s %7.0f %12.3f %14.3f %7.1f\n", (c.scene + size).c_str(), faces, best, evolver, evolver / best);
             EXPECT_LE(best, evolver) << c.scene << size;
         }
