@@ -68,7 +68,7 @@ Panels make_panels(Gnuplot& gnuplot, const RunReader& run, const PlotOptions& op
     const io::CsvTable series = run.series();
     Panels panels;
     const bool foam = series.column("mean_radius") >= 0;
-    if (series.column("total_area") >= 0) {
+    if (series.column("gas_volume") >= 0) {  // measured on films
         panels.all = film_panels(gnuplot, series);
         for (const Panel& panel : panels.all) panels.main.push_back(panel.name);
         return panels;
