@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "frame_source.h"
 #include "output.h"
+#include "plot/film_panels.h"
 #include "plot/foam_panels.h"
 #include "plot/gnuplot.h"
 #include "plot/snapshot.h"
@@ -67,6 +68,11 @@ Panels make_panels(Gnuplot& gnuplot, const RunReader& run, const PlotOptions& op
     const io::CsvTable series = run.series();
     Panels panels;
     const bool foam = series.column("mean_radius") >= 0;
+    if (series.column("gas_volume") >= 0) {  // measured on films
+        panels.all = film_panels(gnuplot, series);
+        for (const Panel& panel : panels.all) panels.main.push_back(panel.name);
+        return panels;
+    }
     if (!foam) {
         panels.all = series_panels(gnuplot, series);
         for (const Panel& panel : panels.all) panels.main.push_back(panel.name);
@@ -159,7 +165,8 @@ void add_plot_command(CLI::App& app) {
         ->type_name("FILE.png|.svg");
     command
         ->add_option("--panel", options->panel,
-                     "Only this one: growth, energy, avalanches, bubbles, sizes, gas_fraction, snapshot")
+                     "Only this one. Of a foam of balls: growth, energy, avalanches, bubbles, sizes, gas_fraction, "
+                     "snapshot; of films: area, volumes, pressures, angles, accuracy, mesh")
         ->type_name("NAME");
     command->add_option("--frame", options->frame, "Frame of the snapshot: a number or last")->type_name("N|last");
     command->add_option("--color", options->color, "What colors its bubbles: radius, energy or displacement")

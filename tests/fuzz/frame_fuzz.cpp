@@ -32,6 +32,7 @@ std::string valid_vtp() {
     frame.surface.regions = {{0, 1}};
     frame.surface.vertex_fields = {{"thickness", "m", 1, false, {1, 2, 3}}};
     frame.surface.face_fields = {{"tension", "N/m", 1, false, {0.025}}};
+    frame.surface.region_fields = {{"closed", "-", 1, true, {0, 1}}, {"pressure", "Pa", 1, false, {0, 2.5}}};
     const auto path = std::filesystem::temp_directory_path() / ("lamella-frame-fuzz." + std::to_string(getpid()));
     lamella::io::write_vtp(path, frame);
     const std::string text = lamella::io::read_file(path);

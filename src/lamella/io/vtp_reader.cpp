@@ -230,6 +230,8 @@ private:
         if (!tag.get("scalar").empty()) {
             const double value = read<double>(tag, "Float64", 1)[0];
             frame_.scalars.push_back({name, tag.unit, value, tag.get("text")});
+        } else if (!tag.get("region_field").empty()) {
+            read_region_field(tag);
         } else if (name == detail::kTimeValue) {
             frame_.time = read<double>(tag, "Float64", 1)[0];
         } else if (name == "step") {
@@ -243,6 +245,15 @@ private:
         } else {
             read_box_value(tag);
         }
+    }
+
+    void read_region_field(const ArrayTag& tag) {
+        const auto index = parse_count(tag.get("region_field"));
+        const auto count = parse_count(tag.get("NumberOfTuples"));
+        if (!index || !count || !tag.name().starts_with(detail::kRegionPrefix)) throw error(tag, "is none of lamella's");
+        sim::Field field = read_field(tag, *count);
+        field.name.erase(0, detail::kRegionPrefix.size());
+        region_fields_.add(*index, std::move(field));
     }
 
     void read_box_value(const ArrayTag& tag) {
@@ -337,6 +348,7 @@ private:
         }
         frame_.surface.vertex_fields = vertex_fields_.take();
         frame_.surface.face_fields = face_fields_.take();
+        frame_.surface.region_fields = region_fields_.take();
         frame_.points.fields = point_fields_.take();
         try {
             detail::check_frame(frame_);
@@ -349,7 +361,7 @@ private:
     detail::VtkArrayReader data_;
     const std::string& file_;
     sim::Frame frame_;
-    FieldList vertex_fields_, face_fields_, point_fields_;
+    FieldList vertex_fields_, face_fields_, point_fields_, region_fields_;
     bool positions_read_ = false, triangles_read_ = false;
     unsigned sides_read_ = 0;
 };

@@ -111,6 +111,16 @@ void write_field_data(VtpText& out, const sim::Frame& frame) {
         const std::string ours = fmt::format(" scalar=\"{}\" text=\"{}\"", k, xml_escaped(scalar.text));
         out.array({scalar.name, scalar.unit, 1, tuples(1) + ours}, std::span(&scalar.value, 1));
     }
+    const std::vector<sim::Field>& of_regions = frame.surface.region_fields;
+    for (std::size_t k = 0; k < of_regions.size(); ++k) {
+        const sim::Field& field = of_regions[k];
+        const TableColumn column{.name = detail::kRegionPrefix + field.name,
+                                 .unit = field.unit,
+                                 .components = field.components,
+                                 .integer = field.integer};
+        out.column(column, field.values,
+                   tuples(frame.surface.regions_described()) + fmt::format(" region_field=\"{}\"", k));
+    }
     out.line("</FieldData>");
 }
 

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
+#include "lamella/measure/film_measures.h"
 #include "lamella/measure/local_gas_fraction.h"
 
 #include <fmt/format.h>
@@ -38,6 +39,7 @@ public:
     void add(std::string name, std::string unit, double value, std::string text) {
         scalars_.push_back({std::move(name), std::move(unit), value, std::move(text)});
     }
+    void add(Scalar scalar) { scalars_.push_back(std::move(scalar)); }
     std::vector<Scalar> take() { return std::move(scalars_); }
 
 private:
@@ -116,6 +118,8 @@ void measure_homogeneity(const Frame& frame, Report& report) {
 
 std::vector<Scalar> measure_frame(const Frame& frame) {
     Report report;
+    if (const auto films = film_measures(frame))
+        for (Scalar& scalar : film_scalars(*films)) report.add(std::move(scalar));
     const sim::Points& points = frame.points;
     if (points.empty() || points.radius.empty()) return report.take();
     if (points.radius.size() != points.size())

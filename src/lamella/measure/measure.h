@@ -19,10 +19,13 @@ namespace lamella::measure {
 ///   mean_path             <path travelled>                  needs `path_length`
 ///   mean_square_displacement  <|displacement from start|^2> needs `displacement`
 ///   gas_fraction_spread   standard deviation of the local gas fraction over a grid of 10 cells per axis
-/// A measure whose field (or box) the frame lacks is left out, and so is everything when there are no balls.
+/// Films: film_scalars of film_measures.h.
+///
+/// A measure whose field (or box) the frame lacks is left out, and so is everything when there are no balls
+/// and no films.
 ///
 /// Sums are taken in fixed blocks: the same bits on any number of threads.
-/// @throws InputError  a field's length does not fit the number of points (a damaged frame file)
+/// @throws InputError  a field's length does not fit the number of points, or those of film_measures (a damaged frame file)
 std::vector<sim::Scalar> measure_frame(const sim::Frame& frame);
 
 /// The value called `name` among the frame's own scalars or the measures; nothing when there is none.

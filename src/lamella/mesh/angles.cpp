@@ -1,5 +1,6 @@
 #include "lamella/mesh/angles.h"
 
+#include "lamella/core/error.h"
 #include "lamella/mesh/edge_faces.h"
 #include "lamella/mesh/detail/film_direction.h"
 #include "lamella/mesh/detail/triangle.h"
@@ -48,8 +49,8 @@ double angle_inside(
 std::array<double, 3> angles_around(const FoamMesh& mesh,
                                     std::span<const EdgeUse> uses,
                                     const std::array<RegionId, 3>& regions,
-                                    const std::array<Vec3, 3>& film) {
-    const Vec3 along = detail::direction(edge_vector(mesh, uses[0]));
+                                    const std::array<Vec3, 3>& film,
+                                    const Vec3& along) {
     std::array<double, 3> angle{};
     for (std::size_t k = 0; k < 3; ++k) {
         std::array<std::size_t, 2> side{};
@@ -69,6 +70,17 @@ struct LineStep {
     VertexId to;
     Vec3 vector;  // [m]
 };
+
+/// The parabola of an edge, from its vertex a to its vertex b.
+struct CurvedEdge {
+    Vec3 start, middle, end;
+};
+
+CurvedEdge curved_edge(const IdVector<FaceId, geometry::CurvedTriangle>& curved, const EdgeUse& use) {
+    const geometry::CurvedTriangle& x = curved[use.face];
+    const std::size_t tail = (use.opposite + 1) % 3, head = (use.opposite + 2) % 3;
+    return use.forward ? CurvedEdge{x[tail], x[3 + tail], x[head]} : CurvedEdge{x[head], x[3 + tail], x[tail]};
+}
 
 using TripleLines = std::map<VertexId, std::vector<LineStep>>;
 
@@ -98,6 +110,46 @@ Vec3 line_direction(const TripleLines& lines, VertexId from, const LineStep& ste
     return parabola_tangent(step.vector, onward[onward[0].to == from ? 1 : 0].vector);
 }
 
+/// A curved step along a triple line, away from a vertex.
+struct CurvedStep {
+    std::size_t edge;
+    VertexId to;
+    CurvedEdge curve;  // its start is the vertex
+};
+
+using CurvedLines = std::map<VertexId, std::vector<CurvedStep>>;
+
+/// Every free edge with three films counts: in a periodic foam a bubble may meet itself there.
+CurvedLines curved_lines(const FoamMesh& mesh, const IdVector<FaceId, geometry::CurvedTriangle>& curved) {
+    const EdgeFaces edges = edge_faces(mesh);
+    CurvedLines lines;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges.of(e).size() != 3 || on_wire(mesh, edges.edge[e])) continue;
+        const CurvedEdge line = curved_edge(curved, edges.of(e).front());
+        lines[edges.edge[e].a].push_back({e, edges.edge[e].b, line});
+        lines[edges.edge[e].b].push_back({e, edges.edge[e].a, {line.end, line.middle, line.start}});
+    }
+    return lines;
+}
+
+/// Tangent at the start of the line that begins with this step: of the cubic that fits the nodes of its first two edges
+/// best, or of the parabola of its only one. At a triple bubble of 4,564 faces the angles are 0.06 degrees off on average;
+/// 0.13 with the first edge's parabola, 0.25 with the polynomial through all five nodes.
+Vec3 curved_direction(const CurvedLines& lines, const CurvedStep& step) {
+    constexpr std::size_t kMostEdges = 2, kDegree = 3;
+    std::vector<Vec3> points{step.curve.start, step.curve.middle, step.curve.end};
+    const CurvedStep* last = &step;
+    for (std::size_t k = 1; k < kMostEdges; ++k) {
+        const std::vector<CurvedStep>& onward = lines.at(last->to);
+        if (onward.size() != 2) break;
+        last = &onward[onward[0].edge == last->edge ? 1 : 0];
+        const Vec3 image = points.back() - last->curve.start;  // periodic foams: next to the step before
+        points.push_back(last->curve.middle + image);
+        points.push_back(last->curve.end + image);
+    }
+    return geometry::end_tangent(points, kDegree);
+}
+
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 
 }  // namespace
@@ -115,7 +167,27 @@ std::vector<TripleEdgeAngles> triple_edge_angles(const FoamMesh& mesh, AngleMeth
             film[i] = method == AngleMethod::kFlat ? detail::flat_film_direction(mesh, uses[i])
                                                    : detail::quadratic_film_direction(mesh, corners, uses[i]);
         result.push_back({edges.edge[e].a, edges.edge[e].b, norm(edge_vector(mesh, uses[0])), *regions,
-                          angles_around(mesh, uses, *regions, film)});
+                          angles_around(mesh, uses, *regions, film, detail::direction(edge_vector(mesh, uses[0])))});
+    }
+    return result;
+}
+
+std::vector<TripleEdgeAngles> triple_edge_angles(const FoamMesh& mesh,
+                                                 const IdVector<FaceId, geometry::CurvedTriangle>& curved) {
+    LAMELLA_ASSERT(curved.size() == mesh.faces.size());
+    const EdgeFaces edges = edge_faces(mesh);
+    std::vector<TripleEdgeAngles> result;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const auto regions = triple_regions(mesh, edges, e);
+        if (!regions) continue;
+        const auto uses = edges.of(e);
+        std::array<Vec3, 3> film;
+        for (std::size_t i = 0; i < 3; ++i)
+            film[i] = detail::direction(geometry::edge_conormal(curved[uses[i].face], uses[i].opposite));
+        const CurvedEdge edge = curved_edge(curved, uses[0]);
+        const Vec3 along = edge.end - edge.start;
+        result.push_back({edges.edge[e].a, edges.edge[e].b, norm(along), *regions,
+                          angles_around(mesh, uses, *regions, film, detail::direction(along))});
     }
     return result;
 }
@@ -130,6 +202,24 @@ std::vector<JunctionAngles> junction_angles(const FoamMesh& mesh, AngleMethod me
             for (std::size_t j = i + 1; j < steps.size(); ++j)
                 junction.angle.push_back(angle_between(line_direction(lines, vertex, steps[i], method),
                                                        line_direction(lines, vertex, steps[j], method)));
+        result.push_back(std::move(junction));
+    }
+    return result;
+}
+
+std::vector<JunctionAngles> junction_angles(const FoamMesh& mesh,
+                                            const IdVector<FaceId, geometry::CurvedTriangle>& curved) {
+    LAMELLA_ASSERT(curved.size() == mesh.faces.size());
+    const CurvedLines lines = curved_lines(mesh, curved);
+    std::vector<JunctionAngles> result;
+    for (const auto& [vertex, steps] : lines) {
+        if (steps.size() < 3) continue;
+        std::vector<Vec3> tangent;
+        for (const CurvedStep& step : steps) tangent.push_back(curved_direction(lines, step));
+        JunctionAngles junction{vertex, {}};
+        for (std::size_t i = 0; i < tangent.size(); ++i)
+            for (std::size_t j = i + 1; j < tangent.size(); ++j)
+                junction.angle.push_back(angle_between(tangent[i], tangent[j]));
         result.push_back(std::move(junction));
     }
     return result;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lamella/geometry/curved_triangle.h"
 #include "lamella/mesh/foam_mesh.h"
 
 #include <array>
@@ -47,6 +48,14 @@ struct JunctionAngles {
 /// the line has only one.
 /// @returns  ordered by vertex
 std::vector<JunctionAngles> junction_angles(const FoamMesh& mesh, AngleMethod method);
+
+/// The same from quadratic triangles, one for each face: films at the middle of each edge, lines at their junctions, along
+/// the cubic that fits the nodes of their first two edges best. Where the triangles come from a solution of that order, the
+/// angles are much closer than with kQuadratic.
+std::vector<TripleEdgeAngles> triple_edge_angles(const FoamMesh& mesh,
+                                                 const IdVector<FaceId, geometry::CurvedTriangle>& curved);
+std::vector<JunctionAngles> junction_angles(const FoamMesh& mesh,
+                                            const IdVector<FaceId, geometry::CurvedTriangle>& curved);
 
 /// How far a set of angles is from a law.
 struct AngleDeviation {

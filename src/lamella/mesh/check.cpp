@@ -35,6 +35,11 @@ public:
         return std::move(found_);
     }
 
+    std::size_t count_intersections() {
+        intersections();
+        return found_.size();
+    }
+
 private:
     bool full() const { return found_.size() >= options_.longest_list; }
     template <class... Args>
@@ -211,6 +216,10 @@ private:
 }  // namespace
 
 std::vector<std::string> faults(const FoamMesh& mesh, const CheckOptions& options) { return Audit(mesh, options).run(); }
+
+std::size_t intersecting_pairs(const FoamMesh& mesh, std::size_t most) {
+    return Audit(mesh, {.longest_list = most}).count_intersections();
+}
 
 void require_sound(const FoamMesh& mesh, const std::string& name) {
     const std::vector<std::string> found = faults(mesh);

@@ -24,6 +24,10 @@ struct CheckOptions {
 /// Never throws on bad content; memory O(#F).
 std::vector<std::string> faults(const FoamMesh& mesh, const CheckOptions& options = {});
 
+/// Pairs of faces that meet beyond what they share, tested exactly; counts up to `most`. Positions must be finite and
+/// ids in range.
+std::size_t intersecting_pairs(const FoamMesh& mesh, std::size_t most);
+
 /// @throws InputError  "NAME: FAULT" of the first fault, and how many more there are
 void require_sound(const FoamMesh& mesh, const std::string& name);
 

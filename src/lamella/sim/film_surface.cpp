@@ -1,5 +1,7 @@
 #include "lamella/sim/film_surface.h"
 
+#include <utility>
+
 namespace lamella::sim {
 
 Surface film_surface(const mesh::FoamMesh& mesh) {
@@ -7,6 +9,13 @@ Surface film_surface(const mesh::FoamMesh& mesh) {
     for (const mesh::Face& face : mesh.faces)
         surface.regions.push_back(
             {static_cast<std::int32_t>(index(face.back)), static_cast<std::int32_t>(index(face.front))});
+    Field closed{"closed", "-", 1, true, {}}, target{"target_volume", "m^3", 1, false, {}};
+    for (const mesh::Region& region : mesh.regions) {
+        const bool bubble = region.kind == mesh::RegionKind::kClosed;
+        closed.values.push_back(bubble ? 1.0 : 0.0);
+        target.values.push_back(bubble ? region.target_volume : 0.0);
+    }
+    surface.region_fields = {std::move(closed), std::move(target)};
     if (mesh.periodic()) {
         for (const mesh::FaceId f : mesh.faces.ids())
             for (std::size_t k = 0; k < 3; ++k) surface.position.push_back(mesh.corner(f, k));

@@ -47,6 +47,10 @@ struct Points {
     const Field* find(std::string_view name) const;
 };
 
+/// The face field with 18 components of a solver that knows its films better than flat triangles do: the quadratic
+/// triangle that each face stands for, its corners, then its points between corners 0-1, 1-2 and 2-0 [m].
+inline constexpr const char* kCurvedNodes = "curved_nodes";
+
 /// Triangles, each between two regions of gas; region 0 is the outside.
 struct Surface {
     std::vector<Vec3> position;
@@ -54,8 +58,17 @@ struct Surface {
     std::vector<std::array<std::int32_t, 2>> regions;  ///< per triangle: on its back and on its front side
     std::vector<Field> vertex_fields;
     std::vector<Field> face_fields;
+    /// What is known of each region, in the order of their numbers; all of one length, or none. Measures look for
+    /// `closed` (1: a bubble, whose films close it in), `target_volume` [m^3] (what its gas fills at rest) and
+    /// `pressure` [Pa] (above region 0).
+    std::vector<Field> region_fields;
 
     bool empty() const { return triangles.empty(); }
+    const Field* find_of_vertices(std::string_view name) const;
+    const Field* find_of_faces(std::string_view name) const;
+    const Field* find_of_regions(std::string_view name) const;
+    /// Regions that region_fields tell of, 0 without any.
+    std::size_t regions_described() const;
 };
 
 /// What can be seen of a simulation at one time. Everything downstream of a solver (files, measures, plots,

@@ -63,6 +63,8 @@ inline void add_surface(sim::Frame& frame, std::uint32_t triangles) {
                              awkward_field("velocity", "m/s", 3, triangles + 2)};
     surface.face_fields = {awkward_field("tension", "N/m", 1, triangles), whole_field("film", triangles),
                            awkward_field("force", "N", 3, triangles)};
+    surface.region_fields = {awkward_field("pressure", "Pa", 1, 6), whole_field("closed", 6),
+                             awkward_field("centroid", "m", 3, 6)};
 }
 
 inline sim::Frame described_frame() {
@@ -143,6 +145,7 @@ inline void expect_same(const sim::Frame& a, const sim::Frame& b) {
     EXPECT_EQ(a.surface.regions, b.surface.regions);
     expect_same(a.surface.vertex_fields, b.surface.vertex_fields);
     expect_same(a.surface.face_fields, b.surface.face_fields);
+    expect_same(a.surface.region_fields, b.surface.region_fields);
     EXPECT_EQ(bits(a.points.position), bits(b.points.position));
     EXPECT_EQ(bits(a.points.radius), bits(b.points.radius));
     EXPECT_EQ(a.points.length_unit, b.points.length_unit);

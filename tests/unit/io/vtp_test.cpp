@@ -117,6 +117,19 @@ TEST(Vtp, RefusesFramesThatContradictThemselves) {
     expect_refused([](auto& f) { f.surface.triangles[1][2] = 6; }, "vertex 6 of 6");
     expect_refused([](auto& f) { f.surface.regions.pop_back(); }, "4 triangles but 3 pairs of regions");
     expect_refused([](auto& f) { f.surface.face_fields[0].name = "region_back"; }, "\"region_back\" twice");
+    expect_refused([](auto& f) { f.surface.region_fields[0].values.pop_back(); }, "field \"closed\" has 6 values; 5 items");
+    expect_refused([](auto& f) { f.surface.region_fields[1].name = "pressure"; }, "\"pressure\" twice");
+    expect_refused([](auto& f) { f.surface.regions[1][0] = 6; }, "region 6 beside it, but the fields of regions tell of 6");
+    expect_refused([](auto& f) { f.surface.regions[1][1] = -1; }, "region -1 beside it");
+    expect_refused([](auto& f) { f.scalars[0].name = "region_pressure"; }, "\"region_pressure\" twice");
+}
+
+TEST(Vtp, ReadsFilesFromBeforeFieldsOfRegions) {
+    sim::Frame frame = surface_frame(5);
+    frame.surface.region_fields.clear();
+    frame.surface.regions[0] = {-7, 1000000};  // nothing is known of them, so any number will do
+    EXPECT_EQ(vtp_text(frame).find("region_field"), std::string::npos);
+    expect_round_trip(frame);
 }
 
 TEST(Vtp, NamesPathAndReasonWhenItCannotWrite) {
@@ -149,6 +162,10 @@ TEST(Vtp, SaysWhatIsWrongWithAFile) {
     expect_refused("<Points>", "<Point>", "not nested");
     expect_refused("offset=\"0\"", "offset=\"1\"", "is not where it should be");
     expect_refused("\n</AppendedData>", "A\n</AppendedData>", "does not end where its last array does");
+    expect_refused("region_field=\"0\"", "region_field=\"x\"", "\"region_pressure\" in FieldData is none of lamella's");
+    expect_refused("NumberOfTuples=\"6\" region_field=\"0\"", "NumberOfTuples=\"1099511627776\" region_field=\"0\"",
+                   "instead of");
+    expect_refused("Name=\"region_pressure\"", "Name=\"regio_pressure\"", "is none of lamella's");
     expect_refused("_", "-", "f.vtp");
 }
 

@@ -1,14 +1,13 @@
 // Resting films against closed forms and the Surface Evolver's values (film tension 1, unit volumes). Every case is a
 // shipped scene, so these tests also keep the scenes alive.
 
-#include "lamella/mesh/check.h"
-#include "lamella/scene/scene.h"
-#include "lamella/scene/shipped.h"
-#include "lamella/solvers/equilibrium/equilibrium_solver.h"
-
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "rest.h"
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -17,54 +16,35 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
-struct Rest {
-    RestAnswer answer;
-    std::size_t faces = 0;
-    std::int64_t steps = 0;
-    double volume_error = 0.0;
-    double residual = 0.0;
-};
-
-Rest rest_of(const std::string& name, const std::vector<std::string>& overrides = {}) {
-    const sim::SolverRegistry registry = scene::all_solvers();
-    const scene::Scene scene =
-        scene::load_scene(scene::resolve_scene_path("equilibrium/" + name), overrides, registry);
-    const auto solver = scene::create_solver(scene, registry);
-    auto& equilibrium = dynamic_cast<EquilibriumSolver&>(*solver);
-    equilibrium.start({});
-    while (!equilibrium.stop_reason()) equilibrium.advance(1.0);
-    Rest rest{*equilibrium.answer(), equilibrium.relaxation().mesh().faces.size(), equilibrium.step(), 0.0,
-              equilibrium.relaxation().residual()};
-    for (const sim::Scalar& s : equilibrium.scalars())
-        if (s.name == "volume_error") rest.volume_error = s.value;
-    if (!equilibrium.relaxation().mesh().periodic())
-        for (const std::string& fault : mesh::faults(equilibrium.relaxation().mesh())) ADD_FAILURE() << name << fault;
-    return rest;
-}
-
 struct Case {
     std::string scene;
     double area;
     double quadratic_error;  ///< allowed, relative: 2e-6 at about 1,000 faces, 1e-7 at 4,600
     std::vector<double> pressure = {};
     double pressure_error = 0.0;
+    /// Allowed after one step on quadratic patches: 1 to 2e-6 at a thousand faces, 0.3 to 1.2e-7 at 4,600.
+    double estimate_error = quadratic_error > 1e-6 ? 2.5e-6 : 2e-7;
 };
 
-void expect_rest(const Case& c, bool stable = true) {
+Rest expect_rest(const Case& c, bool stable = true) {
     const Rest rest = rest_of(c.scene);
     const RestAnswer& a = rest.answer;
     const auto faces = static_cast<double>(rest.faces);
-    std::printf("%-28s F %6.0f steps %3d  area %+.1e polyhedral %+.1e  films %.3f %.3f lines %.3f deg\n", c.scene.c_str(),
-                faces, static_cast<int>(rest.steps), a.area / c.area - 1.0, a.polyhedral_area / c.area - 1.0,
-                a.film_angles.mean / kDegree, a.film_angles.largest / kDegree, a.junction_angles.largest / kDegree);
+    std::printf(
+        "%-28s F %6.0f steps %3d (%3d)  area %+.1e estimate %+.1e polyhedral %+.1e  films %.3f %.3f lines %.3f %.3f deg\n",
+        c.scene.c_str(), faces, static_cast<int>(rest.steps), rest.iterations, a.area / c.area - 1.0,
+        a.estimated_area / c.area - 1.0, a.polyhedral_area / c.area - 1.0, a.film_angles.mean / kDegree,
+        a.film_angles.largest / kDegree, a.junction_angles.mean / kDegree, a.junction_angles.largest / kDegree);
     EXPECT_NEAR(a.area / c.area, 1.0, c.quadratic_error) << c.scene;
+    EXPECT_NEAR(a.estimated_area / c.area, 1.0, c.estimate_error) << c.scene;
     EXPECT_NEAR(a.polyhedral_area / c.area, 1.0, 5.0 / faces + 1e-4) << c.scene;
     EXPECT_LT(rest.residual, 1e-8) << c.scene;
     EXPECT_LT(rest.volume_error, 1e-9) << c.scene;
-    EXPECT_LT(rest.steps, 45) << c.scene;
+    EXPECT_LT(rest.steps, 30) << c.scene;
     EXPECT_EQ(a.stable(), stable) << c.scene;
     for (std::size_t k = 0; k < c.pressure.size(); ++k)
         EXPECT_NEAR(a.pressure[k + 1] / c.pressure[k], 1.0, c.pressure_error) << c.scene;
+    return rest;
 }
 
 TEST(EquilibriumReference, DoubleBubbles) {
@@ -81,11 +61,45 @@ TEST(EquilibriumReference, DoubleBubbles) {
 
 TEST(EquilibriumReference, PartitionCurvature) {
     // The jump across the partition is twice its curvature, 1/R2 - 1/R1 (film tension 1).
-    for (const auto& [scene, curvature] :
-         {std::pair{"double-bubble-0.5", 0.315964241579076}, std::pair{"double-bubble-0.125", 1.195598337257781}}) {
-        const RestAnswer a = rest_of(scene).answer;
-        EXPECT_NEAR((a.pressure[2] - a.pressure[1]) / (2.0 * curvature), 1.0, 1e-3) << scene;
-    }
+    for (const char* size : {"-small", ""})
+        for (const auto& [scene, curvature] :
+             {std::pair{"double-bubble-0.5", 0.315964241579076}, std::pair{"double-bubble-0.125", 1.195598337257781}}) {
+            const RestAnswer a = rest_of(scene + std::string(size)).answer;
+            EXPECT_NEAR((a.pressure[2] - a.pressure[1]) / (2.0 * curvature), 1.0, 1e-3) << scene;
+        }
+}
+
+/// Outer radii and curvature of the partition of a double bubble of 5 cm and `second`, from closed forms.
+struct MelpDouble {
+    const char* mode;
+    double second, area, curvature, radius1, radius2;
+};
+
+TEST(EquilibriumReference, DoubleBubblesOfMelpsTable) {
+    const std::vector<MelpDouble> cases{
+        {"radii", 0.02, 0.0337231938913647, 30.0, 0.05, 0.02},
+        {"radii", 0.025, 0.0353429173528852, 20.0, 0.05, 0.025},
+        {"radii", 0.035, 0.0403593089612912, 8.57142857142857, 0.05, 0.035},
+        {"radii", 0.04, 0.0438637766143827, 5.0, 0.05, 0.04},
+        {"radii", 0.05, 0.0530143760293278, 0.0, 0.05, 0.05},
+        {"volumes", 0.02, 0.0353930737554956, 22.0098045328874, 0.0503709101081195, 0.0238877088608731},
+        {"volumes", 0.025, 0.0378012604069446, 14.8338003087274, 0.0506510237838738, 0.0289211782715905},
+        {"volumes", 0.035, 0.0444944765026675, 6.44295826696995, 0.0514241605025679, 0.0386263383794675},
+        {"volumes", 0.04, 0.0488031847308559, 3.77114896849568, 0.0518905667661156, 0.0433981169636351},
+        {"volumes", 0.05, 0.0593723807167931, 0.0, 0.05291336839894, 0.05291336839894},
+    };
+    for (const char* size : {"-small", ""})
+        for (const MelpDouble& c : cases) {
+            const bool fine = std::string(size).empty();
+            const std::string scene = fmt::format("melp-double-{}-{:g}{}", c.mode, c.second, size);
+            const Rest rest = expect_rest({scene,
+                                           c.area,
+                                           fine ? 1e-7 : 2e-6,
+                                           {2.0 / c.radius1, 2.0 / c.radius2},
+                                           fine ? 1e-5 : 1e-4});
+            const double curvature = 0.5 * (rest.answer.pressure[2] - rest.answer.pressure[1]);
+            EXPECT_NEAR(curvature, c.curvature, 1e-3 * c.curvature + 1e-4 / c.radius1) << scene;
+        }
 }
 
 TEST(EquilibriumReference, DoubleBubbleFromTouchingSpheres) {
@@ -101,21 +115,28 @@ TEST(EquilibriumReference, TripleAndQuadruple) {
 }
 
 TEST(EquilibriumReference, AnglesOfPlateauOnCurvedPatches) {
-    for (const char* scene : {"double-bubble-1", "triple-bubble", "quadruple-bubble"}) {
-        const RestAnswer a = rest_of(scene).answer;
-        EXPECT_LT(a.film_angles.mean, 0.1 * kDegree) << scene;
-        EXPECT_LT(a.film_angles.largest, 0.3 * kDegree) << scene;
-        EXPECT_LT(a.junction_angles.mean, 0.3 * kDegree) << scene;
-        EXPECT_LT(a.junction_angles.largest, 0.3 * kDegree) << scene;
-    }
+    for (const char* scene :
+         {"double-bubble-1", "double-bubble-0.5", "double-bubble-0.125", "triple-bubble", "quadruple-bubble"})
+        for (const char* size : {"-small", ""}) {
+            const RestAnswer a = rest_of(scene + std::string(size)).answer;
+            const bool fine = std::string(size).empty();  // about 4,600 faces, else about 1,000
+            EXPECT_LT(a.film_angles.mean, (fine ? 0.1 : 0.5) * kDegree) << scene << size;
+            EXPECT_LT(a.film_angles.largest, (fine ? 0.3 : 1.5) * kDegree) << scene << size;
+            EXPECT_LT(a.junction_angles.mean, (fine ? 0.1 : 0.5) * kDegree) << scene << size;
+            EXPECT_LT(a.junction_angles.largest, (fine ? 0.3 : 1.5) * kDegree) << scene << size;
+        }
 }
 
 TEST(EquilibriumReference, ClustersFromRandomHeaps) {
-    expect_rest({"cluster-5-small", 20.632224444053, 2e-6});
-    expect_rest({"cluster-6-small", 24.228995845132, 3e-6});
-    expect_rest({"cluster-8-small", 31.4325184082, 3e-6});
-    expect_rest({"cluster-10-small", 38.454847587224, 2e-6});
-    expect_rest({"cluster-13-small", 48.386854577245, 2e-6});
+    // Clusters have small films of a few triangles (a twentieth of a bubble's section at N = 6 and 8): one step does less.
+    const auto cluster = [](const char* scene, double area) {
+        return Case{.scene = scene, .area = area, .quadratic_error = 2e-6, .estimate_error = 4e-6};
+    };
+    expect_rest(cluster("cluster-5-small", 20.632224444053));
+    expect_rest(cluster("cluster-6-small", 24.228995845132));
+    expect_rest(cluster("cluster-8-small", 31.4325184082));
+    expect_rest(cluster("cluster-10-small", 38.454847587224));
+    expect_rest(cluster("cluster-13-small", 48.386854577245));
 }
 
 TEST(EquilibriumReference, Catenoids) {
@@ -125,6 +146,38 @@ TEST(EquilibriumReference, Catenoids) {
     expect_rest({"catenoid-0.4", 2.496276337589494, 1e-7});
     expect_rest({"catenoid-0.8", 4.883793201931147, 1e-7});
     expect_rest({"catenoid-1.3", 7.439781377393902, 1e-7});
+}
+
+/// Distance from the axis (z, or whatever the rings stand across) at the waist, from the nodes near it:
+/// r = c cosh(z / c) = c + z^2 / (2 c) + ...
+double neck_radius(const Rest& rest, double half_separation) {
+    double sum = 0.0, count = 0.0;
+    Vec3 low{{1e9, 1e9, 1e9}}, high{{-1e9, -1e9, -1e9}};
+    for (const Vec3& x : rest.mesh.position)
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], x[k]);
+            high[k] = std::max(high[k], x[k]);
+        }
+    const Vec3 center = 0.5 * (low + high);
+    for (const geometry::CurvedTriangle& patch : rest.answer.curved)
+        for (const Vec3& x : patch) {
+            const Vec3 at = x - center;
+            if (std::abs(at[2]) > 0.1 * half_separation) continue;
+            const double r = std::hypot(at[0], at[1]);
+            sum += r - 0.5 * at[2] * at[2] / r;
+            count += 1.0;
+        }
+    return sum / count;
+}
+
+TEST(EquilibriumReference, NeckOfCatenoids) {
+    for (const auto& [separation, neck] :
+         {std::pair{0.4, 0.9795106030753393}, std::pair{0.8, 0.910737994273788}, std::pair{1.3, 0.6416076017778053}}) {
+        const std::string name = fmt::format("catenoid-{:g}", separation);
+        // The radius at the waist answers to the mesh far more than the area does; most so near the limit.
+        EXPECT_NEAR(neck_radius(rest_of(name + "-small"), 0.5 * separation) / neck, 1.0, 1e-4) << name;
+        EXPECT_NEAR(neck_radius(rest_of(name), 0.5 * separation) / neck, 1.0, 1e-5) << name;
+    }
 }
 
 TEST(EquilibriumReference, CatenoidBeyondItsLimitPinchesIntoTwoDisks) {
@@ -162,6 +215,12 @@ TEST(EquilibriumReference, FoamsThatFillSpace) {
     expect_rest({"kelvin", 5.3062761631070705, 2e-7});
     expect_rest({"weaire-phelan-small", 4.0 * 5.28833901559975, 2e-6});
     expect_rest({"weaire-phelan", 4.0 * 5.28833901559975, 1e-7});
+    for (const auto& [scene, error] : {std::pair{"weaire-phelan-small", 2e-4}, std::pair{"weaire-phelan", 2e-5}}) {
+        const RestAnswer a = rest_of(scene).answer;
+        const auto [low, high] = std::minmax_element(a.pressure.begin() + 1, a.pressure.end());
+        std::printf("%s: dp %.9f\n", scene, *high - *low);
+        EXPECT_NEAR((*high - *low) / 0.166202435, 1.0, error) << scene;
+    }
 }
 
 TEST(EquilibriumReference, SphereHasTheEigenvalueOfItsSecondHarmonic) {

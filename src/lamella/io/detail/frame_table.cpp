@@ -65,6 +65,14 @@ void check_surface(const sim::Surface& surface) {
     }
     check_fields(surface.vertex_fields, surface.position.size(), {"radius"});
     check_fields(surface.face_fields, surface.triangles.size(), {"region_back", "region_front"});
+    const std::size_t described = surface.regions_described();
+    check_fields(surface.region_fields, described, {});
+    if (surface.region_fields.empty()) return;
+    for (const auto& sides : surface.regions)
+        for (const std::int32_t region : sides)
+            if (region < 0 || static_cast<std::size_t>(region) >= described)
+                throw InputError(fmt::format("a triangle has region {} beside it, but the fields of regions tell of {}",
+                                             region, described));
 }
 
 TableColumn column_of(const sim::Field& field) {
@@ -83,6 +91,7 @@ void check_frame(const sim::Frame& frame) {
     // What every frame file says about the frame itself.
     std::set<std::string> used{"TimeValue",  "step",          "solver",      "time_unit",   "length_unit",
                                "box_origin", "box_dimension", "box_lengths", "box_periodic"};
+    for (const sim::Field& field : frame.surface.region_fields) used.insert(kRegionPrefix + field.name);
     for (const sim::Scalar& scalar : frame.scalars) {
         check_name(scalar.name, scalar.unit, used);
         if (!is_printable(scalar.text)) {

@@ -14,6 +14,9 @@ namespace lamella::io::detail {
 /// to missing vertices. @throws InputError  naming the field
 void check_frame(const sim::Frame& frame);
 
+/// Before the name of a region's field, where it stands among other data: region_pressure.
+inline const std::string kRegionPrefix = "region_";
+
 /// A column of the one table that a file with a single list of points has: surface vertices first, then points.
 /// Rows that the column says nothing about hold NaN, or -1 in an integer column.
 struct TableColumn {

@@ -8,6 +8,7 @@
 //             point_field="k"     ... and field k of the points; an array may be both, rows of one set follow the
 //             other's face_field="k"      face field k; rows of point cells come first scalar="k"          scalar k of
 //             the frame, with its meaning as text="..."
+//             region_field="k"    field k of the regions, one row per region; its name has region_ before it
 //
 // Array names: kTimeValue is the one ParaView looks for.
 

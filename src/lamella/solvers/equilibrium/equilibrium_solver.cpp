@@ -54,9 +54,12 @@ sim::StepReport EquilibriumSolver::advance(double time_limit) {
         return {.iterations = 1};
     }
     const auto& events = input_.films->events;
-    time_ = next_event_ < events.size() ? std::min(time_limit, std::max(time_, events[next_event_].time)) : time_limit;
-    apply_events();
     ++steps_;
+    if (next_event_ < events.size() && events[next_event_].time <= time_) {  // what is seen at its time is the rest before
+        apply_events();
+        return {.iterations = 1};
+    }
+    time_ = next_event_ < events.size() ? std::min(time_limit, events[next_event_].time) : time_limit;
     return {.step = time_ - before};
 }
 

@@ -3,6 +3,7 @@
 #include "lamella/mesh/area.h"
 #include "lamella/mesh/edge_faces.h"
 #include "lamella/mesh/quality.h"
+#include "lamella/sim/film_surface.h"
 #include "lamella/solvers/equilibrium/equilibrium_solver.h"
 #include "lamella/solvers/equilibrium/rest_system.h"
 
@@ -27,12 +28,6 @@ double worst_volume_error(const FoamMesh& mesh) {
     return worst;
 }
 
-std::vector<double> of_vertices(const FoamMesh& mesh, const auto& value) {
-    std::vector<double> values;
-    for (const mesh::VertexId v : mesh.position.ids()) values.push_back(value(v));
-    return values;
-}
-
 }  // namespace
 
 sim::Frame EquilibriumSolver::frame() const {
@@ -41,34 +36,29 @@ sim::Frame EquilibriumSolver::frame() const {
     frame.solver = "equilibrium";
     frame.time = time_;
     frame.step = steps_;
+    frame.surface = sim::film_surface(mesh);
     sim::Surface& surface = frame.surface;
-    if (mesh.periodic()) {  // every face is shown whole: its corners are its own
-        for (const mesh::FaceId f : mesh.faces.ids())
-            for (std::size_t k = 0; k < 3; ++k) surface.position.push_back(mesh.corner(f, k));
-        for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) surface.triangles.push_back({3 * f, 3 * f + 1, 3 * f + 2});
-    } else {
-        surface.position = mesh.position.values();
-        for (const mesh::Face& face : mesh.faces) {
-            std::array<std::uint32_t, 3> corners{};
-            for (std::size_t k = 0; k < 3; ++k) corners[k] = static_cast<std::uint32_t>(index(face.vertices[k]));
-            surface.triangles.push_back(corners);
-        }
-        surface.vertex_fields.push_back({"on_wire", "-", 1, true, of_vertices(mesh, [&](mesh::VertexId v) {
-                                             return static_cast<double>(mesh.on_wire[v]);
-                                         })});
-    }
     const double tension = input_.films->material.film_tension();
     sim::Field jump{"pressure_difference", "Pa", 1, false, {}};
     const auto pressure = [&](mesh::RegionId r) {
         const auto& known = answer_ && !answer_->pressure.empty() ? answer_->pressure : relaxation_->pressure();
         return index(r) < known.size() ? tension * known[index(r)] : 0.0;
     };
-    for (const mesh::Face& face : mesh.faces) {
-        surface.regions.push_back(
-            {static_cast<std::int32_t>(index(face.back)), static_cast<std::int32_t>(index(face.front))});
-        jump.values.push_back(pressure(face.back) - pressure(face.front));
-    }
+    for (const mesh::Face& face : mesh.faces) jump.values.push_back(pressure(face.back) - pressure(face.front));
     surface.face_fields.push_back(std::move(jump));
+    if (answer_ && !answer_->curved.empty()) {
+        sim::Field nodes{sim::kCurvedNodes, "m", 18, false, {}};
+        for (const geometry::CurvedTriangle& patch : answer_->curved)
+            for (const Vec3& x : patch) nodes.values.insert(nodes.values.end(), {x[0], x[1], x[2]});
+        surface.face_fields.push_back(std::move(nodes));
+    }
+    sim::Field above{"pressure", "Pa", 1, false, {}};
+    const bool pressure_known = answer_ || !relaxation_->pressure().empty();
+    for (const mesh::RegionId r : mesh.regions.ids()) {
+        const bool bubble = mesh.regions[r].kind == RegionKind::kClosed;
+        above.values.push_back(!bubble ? 0.0 : pressure_known ? pressure(r) : std::numeric_limits<double>::quiet_NaN());
+    }
+    surface.region_fields.push_back(std::move(above));
     frame.scalars = scalars();
     return frame;
 }
@@ -90,6 +80,8 @@ std::vector<sim::Scalar> EquilibriumSolver::scalars() const {
         {"polyhedral_area", "m^2", flat, "of the flat triangles"},
         {"area", "m^2", at_rest([](const RestAnswer& a) { return a.area; }),
          "of curved triangles at rest, weighted with the films' tensions"},
+        {"estimated_area", "m^2", at_rest([](const RestAnswer& a) { return a.estimated_area; }),
+         "the same after one Newton step only"},
         {"surface_energy", "J", tension * at_rest([](const RestAnswer& a) { return a.area; }), "film tension * area"},
         {"volume_error", "-", worst_volume_error(mesh), "largest relative error of a bubble's volume"},
         {"virial", "-", at_rest([](const RestAnswer& a) { return a.virial; }),
@@ -115,6 +107,7 @@ std::vector<sim::Scalar> EquilibriumSolver::scalars() const {
         {"faces", "-", static_cast<double>(mesh.faces.size()), "triangles"},
         {"min_angle", "deg", kDegrees * mesh::min_angle(mesh), "smallest angle of a triangle"},
         {"steps", "-", static_cast<double>(steps_), "taken"},
+        {"iterations", "-", static_cast<double>(relaxation_->iterations()), "of the flow and of Newton's method"},
     };
 }
 

@@ -171,6 +171,7 @@ double Relaxation::flow_time() const {
 
 void Relaxation::flow() {
     mesh::staged_move(*tracker_, curvature_flow_step(mesh(), options_.tension, flow_time()));
+    ++iterations_;
     tidy();
 }
 
@@ -179,6 +180,7 @@ void Relaxation::newton() {
     Newton newton(system, Goal::kMinimum);
     newton.step();
     mesh::staged_move(*tracker_, displacement_to(system.patches().position));
+    ++iterations_;
     tidy();
 }
 
@@ -220,6 +222,7 @@ void Relaxation::settle_frozen() {
 
 void Relaxation::keep_pressures(const RestSystem& system, const Newton& newton) {
     residual_ = newton.last().residual;
+    iterations_ += newton.steps();
     pressure_.assign(mesh().regions.size(), 0.0);
     for (std::size_t c = 0; c < newton.pressure().size(); ++c)
         pressure_[index(system.constrained()[c])] = newton.pressure()[c];
@@ -284,6 +287,7 @@ Relaxation::Relaxation(sim::StateReader& in, const RelaxationOptions& options) :
     residual_ = in.read_double("relaxation/residual");
     best_residual_ = in.read_double("relaxation/best_residual");
     steps_ = static_cast<int>(in.read_integer("relaxation/steps"));
+    iterations_ = static_cast<int>(in.read_integer("relaxation/iterations"));
     failed_settles_ = static_cast<int>(in.read_integer("relaxation/failed_settles"));
     slow_steps_ = static_cast<int>(in.read_integer("relaxation/slow_steps"));
     in.read("relaxation/gas", mesh().regions.size(), gas_.values());
@@ -297,6 +301,7 @@ void Relaxation::save(sim::StateWriter& out) const {
     out.write_value("relaxation/residual", residual_);
     out.write_value("relaxation/best_residual", best_residual_);
     out.write_value("relaxation/steps", static_cast<std::int64_t>(steps_));
+    out.write_value("relaxation/iterations", static_cast<std::int64_t>(iterations_));
     out.write_value("relaxation/failed_settles", static_cast<std::int64_t>(failed_settles_));
     out.write_value("relaxation/slow_steps", static_cast<std::int64_t>(slow_steps_));
     out.write("relaxation/gas", std::span<const double>(gas_.values()));

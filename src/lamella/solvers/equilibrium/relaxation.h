@@ -51,6 +51,8 @@ public:
     double residual() const { return residual_; }           ///< before the last step
     const std::vector<double>& pressure() const { return pressure_; }  ///< per region, over a film tension of 1 [1/m]
     int steps() const { return steps_; }
+    /// Systems of equations solved: flow steps and Newton's, those on the frozen mesh included.
+    int iterations() const { return iterations_; }
     std::vector<mesh::TopologyEvent> take_events();
 
     /// Changes of the regions; the films leave their rest.
@@ -83,6 +85,7 @@ private:
     double residual_ = 0.0;
     std::vector<double> pressure_;
     int steps_ = 0;
+    int iterations_ = 0;
     int failed_settles_ = 0;
     int slow_steps_ = 0;
     int crossing_tries_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lamella/geometry/curved_triangle.h"
 #include "lamella/mesh/angles.h"
 #include "lamella/mesh/foam_mesh.h"
 #include "lamella/solvers/equilibrium/newton.h"
@@ -13,7 +14,8 @@ namespace lamella::equilibrium {
 /// What is known about films at rest. Lengths in the mesh's unit, for a film tension of 1; angles in radians.
 struct RestAnswer {
     double polyhedral_area = 0.0;       ///< of the flat faces: too large by about 3 / F of itself
-    double quick_area = 0.0;            ///< after one step on quadratic patches
+    double estimated_area = 0.0;        ///< after one Newton step on quadratic patches, corrected for the volumes; `area`
+                                        ///< where the mesh is too uneven for that
     double area = 0.0;                  ///< of the quadratic patches at rest; weighted with the tensions, as the others
     double residual = 0.0;              ///< of the quadratic patches
     bool converged = false;             ///< they came to rest; if not, `area` is the best that was reached
@@ -27,6 +29,7 @@ struct RestAnswer {
     mesh::AngleDeviation film_angles;      ///< from 120 degrees, on the quadratic patches
     mesh::AngleDeviation junction_angles;  ///< from 109.47 degrees
     std::size_t triple_edges = 0, junctions = 0;
+    std::vector<geometry::CurvedTriangle> curved;  ///< the quadratic patch of each face
 
     /// A minimum: no unstable mode and nothing that could part.
     bool stable() const { return converged && index == 0 && irregular_vertices == 0; }

@@ -47,6 +47,7 @@ struct Options {
     bool remeshing = true;
     bool merging = true;
     double sum_tolerance = 1e-5;
+    bool sum_in_double = false;
     CompatOptions compat;
 
     template <class Visitor>
@@ -79,6 +80,8 @@ struct Options {
         option("merging", merging, {"films that touch become one"});
         option("sum_tolerance", sum_tolerance, sim::strictly_between(0.0, 0.1),
                {"error of the fast summation over the largest velocity; small meshes are summed exactly"});
+        option("sum_in_double", sum_in_double,
+               {"pairs in double precision; false: in single, summed in double, off by about 1e-6 of the velocity"});
         option.group("compat", compat, "published behaviour, for comparison");
     }
 };

@@ -347,6 +347,8 @@ void VortexSheetSolver::inflate() {
 spatial::VortexSumOptions VortexSheetSolver::sum_options() const {
     return {.kernel = options_.kernel,
             .delta = options_.smoothing_length * input_.films->edge_length,
+            .precision = options_.sum_in_double ? spatial::VortexSumOptions::Precision::kDouble
+                                                : spatial::VortexSumOptions::Precision::kSingle,
             .tolerance = options_.sum_tolerance};
 }
 
