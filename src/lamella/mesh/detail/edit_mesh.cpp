@@ -25,7 +25,7 @@ void erase_sorted(FaceList& list, FaceId f) {
 
 EditMesh::EditMesh(FoamMesh mesh, double cell) : mesh_(std::move(mesh)), cell_(cell), grid_(cell, 64) {
     rebuild_lists();
-    rebuild_grid();
+    index_faces();
 }
 
 Box EditMesh::box(FaceId f) const {
@@ -70,7 +70,7 @@ void EditMesh::touch(FaceId f) {
 }
 
 void EditMesh::begin() {
-    LAMELLA_ASSERT(log_.empty());
+    LAMELLA_ASSERT(log_.empty() && indexed_);
     ++transaction_;
     touched_.clear();
     starved_before_ = starved_;
@@ -151,11 +151,13 @@ void EditMesh::rollback_to(std::size_t mark) {
 
 void EditMesh::set_positions(const IdVector<VertexId, Vec3>& position) {
     mesh_.position = position;
-    rebuild_grid();
+    indexed_ = false;
 }
 
-void EditMesh::rebuild_grid() {
-    grid_ = FaceGrid(cell_, 2 * mesh_.faces.size());
+void EditMesh::index_faces() {
+    if (indexed_) return;
+    indexed_ = true;
+    grid_.clear(2 * mesh_.faces.size());
     for (const FaceId f : mesh_.faces.ids())
         if (alive(f)) grid_.insert(f, box(f));
 }
@@ -185,7 +187,7 @@ EditMesh::Maps EditMesh::compact() {
     }
     mesh_ = std::move(kept);
     rebuild_lists();
-    rebuild_grid();
+    indexed_ = false;
     return maps;
 }
 
