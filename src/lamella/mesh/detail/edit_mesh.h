@@ -63,6 +63,11 @@ public:
     const std::vector<FaceId>& touched() const { return touched_; }
     bool is_touched(FaceId f) const { return stamp_[f] == transaction_; }
 
+    /// Whether the faces at v changed since `clear_suspicion(v)`: only then can v have become irregular, as that depends
+    /// on how films hang together and not on where they are. All vertices are suspect at first.
+    bool suspect(VertexId v) const { return suspect_[v] != 0; }
+    void clear_suspicion(VertexId v) { suspect_[v] = 0; }
+
     /// New positions for all vertices at once, outside of any transaction.
     void set_positions(const IdVector<VertexId, Vec3>& position);
 
@@ -90,6 +95,7 @@ private:
     FoamMesh mesh_;
     double cell_;
     IdVector<VertexId, FaceList> faces_at_;
+    IdVector<VertexId, std::uint8_t> suspect_;
     IdVector<RegionId, std::size_t> sides_;
     FaceGrid grid_;
     bool indexed_ = false;

@@ -191,8 +191,13 @@ void separate_vertices(Workbench& bench) {
     constexpr int kMostPasses = 5;
     EditMesh& mesh = bench.mesh;
     std::vector<VertexId> irregular;
-    for (const VertexId v : mesh.mesh().position.ids())
-        if (!mesh.faces_at(v).empty() && !mesh.on_wire(v) && !is_regular(mesh, v)) irregular.push_back(v);
+    for (const VertexId v : mesh.mesh().position.ids()) {
+        if (!mesh.suspect(v) || mesh.faces_at(v).empty() || mesh.on_wire(v)) continue;
+        if (is_regular(mesh, v))
+            mesh.clear_suspicion(v);
+        else
+            irregular.push_back(v);
+    }
     for (int pass = 0; pass < kMostPasses && !irregular.empty(); ++pass) {
         std::vector<VertexId> left;
         bool any = false;
