@@ -134,6 +134,22 @@ bool cancel_flaps(EditMesh& mesh, VertexId v) {
     return true;
 }
 
+bool identify(EditMesh& mesh, VertexId kept, VertexId gone, const Vec3& place) {
+    const FaceList faces = mesh.faces_at(gone);
+    for (const FaceId f : faces) {
+        Face face = mesh.face(f);
+        if (face.has(kept)) {
+            mesh.kill_face(f);
+            continue;
+        }
+        for (VertexId& v : face.vertices)
+            if (v == gone) v = kept;
+        mesh.set_face(f, face);
+    }
+    mesh.move_vertex(kept, place);
+    return cancel_flaps(mesh, kept);
+}
+
 void StarVolumes::add(RegionId r, double volume) {
     for (std::size_t i = 0; i < regions.size(); ++i)
         if (regions[i] == r) {

@@ -121,24 +121,6 @@ std::optional<std::array<VertexId, 3>> match(const Workbench& bench, FaceId f, F
     return best;
 }
 
-/// Makes b and a one vertex halfway between them.
-bool identify(EditMesh& mesh, VertexId a, VertexId b) {
-    const FaceList faces = mesh.faces_at(b);
-    const Vec3 middle = 0.5 * (mesh.at(a) + mesh.at(b));
-    for (const FaceId f : faces) {
-        Face face = mesh.face(f);
-        if (face.has(a)) {
-            mesh.kill_face(f);
-            continue;
-        }
-        for (VertexId& v : face.vertices)
-            if (v == b) v = a;
-        mesh.set_face(f, face);
-    }
-    mesh.move_vertex(a, middle);
-    return cancel_flaps(mesh, a);
-}
-
 /// The two triangles become one film, or a hole where the same region lies behind both. A contact is never a point,
 /// so that no separation undoes it.
 bool merge(Workbench& bench, FaceId f, FaceId g) {
@@ -163,7 +145,8 @@ bool merge(Workbench& bench, FaceId f, FaceId g) {
     mesh.begin();
     bool fits = true;
     for (std::size_t i = 0; i < 3 && fits; ++i)
-        if (own[i] != (*partner)[i]) fits = identify(mesh, own[i], (*partner)[i]);
+        if (own[i] != (*partner)[i])
+            fits = identify(mesh, own[i], (*partner)[i], 0.5 * (mesh.at(own[i]) + mesh.at((*partner)[i])));
     if (fits)
         for (const VertexId v : own)
             if (!mesh.faces_at(v).empty() && !mesh.on_wire(v))

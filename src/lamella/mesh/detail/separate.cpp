@@ -216,6 +216,7 @@ void separate_vertices(Workbench& bench) {
                 continue;
             }
             mesh.commit();
+            bench.resample(v, {v}, {1.0});
             bench.resample(parted->copy, {v}, {1.0});
             bench.events.push_back(parted->event);
             ++bench.report.separations;
