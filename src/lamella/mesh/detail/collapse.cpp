@@ -217,7 +217,7 @@ bool Collapse::try_at(const Vec3& place, double weight_of_gone) {
     bench_.resample(kept_, {kept_, gone_}, {1.0 - weight_of_gone, weight_of_gone});
     ++bench_.report.collapses;
     if (parted) {
-        bench_.resample(parted->copy, {kept_}, {1.0});
+        bench_.resample(parted->copy, {parted->vertex}, {1.0});
         bench_.events.push_back(parted->event);
         ++bench_.report.separations;
     }

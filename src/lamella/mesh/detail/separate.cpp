@@ -178,7 +178,7 @@ std::optional<Separation> separate_vertex(
             restore_volumes(mesh, v, before, origin, 0.5 * s);
             if (acceptable(mesh, sharpest)) {
                 const auto kind = parting.pinch ? TopologyEvent::Kind::kPinch : TopologyEvent::Kind::kT1;
-                return Separation{copy, {kind, place, parting.a, parting.b}};
+                return Separation{v, copy, {kind, place, parting.a, parting.b}};
             }
             mesh.rollback_to(mark);
         }

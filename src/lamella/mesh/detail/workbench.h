@@ -54,7 +54,7 @@ void flip_edges(Workbench& bench);
 /// Within the open transaction: parts a vertex where sectors without a common face meet into two, the way that saves
 /// most area and passes the checks. `before`: volumes of the touched faces and the star of v before the transaction.
 struct Separation {
-    VertexId copy;
+    VertexId vertex, copy;
     TopologyEvent event;
 };
 std::optional<Separation> separate_vertex(
