@@ -63,6 +63,7 @@ public:
 
 private:
     bool try_at(const Vec3& place, double weight_of_gone);
+    bool moors_a_region() const;
     bool turns_too_far() const;
     bool sweeps_through_film(VertexId v, const Vec3& from, const Vec3& to) const;
     bool stays_regular();
@@ -115,9 +116,18 @@ Collapse::Collapse(Workbench& bench, VertexId v, VertexId w) : bench_(bench), me
 }
 
 bool Collapse::run() {
-    if (mesh_.on_wire(kept_)) return try_at(kept_at_, 0.0);
+    if (mesh_.on_wire(kept_)) return !moors_a_region() && try_at(kept_at_, 0.0);
     if (!same_rank_) return try_at(kept_at_, 0.0);
     return try_at(0.5 * (kept_at_ + gone_at_), 0.5) || try_at(kept_at_, 0.0) || try_at(gone_at_, 1.0);
+}
+
+/// The wire vertex that stays would come to lie at a region that it did not touch: a triple line would hop onto the wire,
+/// or along it from where it ends, and nothing parts vertices of wires again.
+bool Collapse::moors_a_region() const {
+    const RegionList at_wire = regions_of(mesh_, mesh_.faces_at(kept_));
+    for (const RegionId r : beyond_gone_)
+        if (!at_wire.contains(r)) return true;
+    return false;
 }
 
 bool Collapse::turns_too_far() const {
