@@ -90,6 +90,7 @@ Tracker::MoveReport Tracker::move(const IdVector<VertexId, Vec3>& displacement) 
 RemeshReport Tracker::remesh() {
     RemeshReport report;
     const TrackerOptions& options = impl_->options;
+    impl_->mesh.index_faces();
     detail::Workbench bench{impl_->mesh, options, impl_->resampler, report, impl_->events};
     if (options.merging) merge_close_faces(bench);
     split_long_edges(bench);
@@ -114,6 +115,7 @@ void Tracker::pop(RegionId region, RegionId into) {
     if (region == into || !where)
         throw InputError(fmt::format("regions {} and {} share no film that could burst", index(region), index(into)));
     RemeshReport report;
+    mesh.index_faces();
     detail::Workbench bench{mesh, impl_->options, impl_->resampler, report, impl_->events};
     absorb(bench, region, into);
     impl_->events.push_back({TopologyEvent::Kind::kPop, *where, region, into});

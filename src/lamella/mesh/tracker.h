@@ -38,6 +38,17 @@ struct TopologyEvent {
 std::string_view name(TopologyEvent::Kind kind);
 
 /// How the values of a vertex follow from values before an edit: value = sum of weight * value(parent).
+///
+/// It comes right after its edit was accepted, edits in the order they are made:
+///   - split: the new vertex from the ends of the edge; collapse: the vertex that stays from both ends;
+///   - merge: each vertex that stays from the pair that it stands for;
+///   - T1, pinch: the vertex that stays from itself, then its copy from it. A collapse that ends in a T1: first the
+///     vertex that stays from both ends, then the copy from the vertex that parted.
+/// `Tracker::mesh()` shows the mesh after the edit, with all ids as they were before the compaction that ends `remesh`
+/// and `pop`: new vertices get the next free ids in the order of the calls, and those that are gone keep theirs, with
+/// no faces, until the compaction. `maps` then leads from these ids to the final ones. Values per vertex and region
+/// also follow the events: on `kSplit` what region a had at the vertices of its piece goes to region b, on `kAbsorb`
+/// and `kPop` what a had goes to b. A flip changes no values.
 struct Resampling {
     VertexId vertex;  ///< new, or with a new place
     std::span<const VertexId> parents;
@@ -95,7 +106,7 @@ public:
 
     /// Topological events since the last call.
     std::vector<TopologyEvent> take_events();
-    /// From the mesh before the last remesh or pop to the mesh now.
+    /// From the ids within the last remesh or pop (those before it and, after them, those it added) to the ids now.
     const CompactionMaps& maps() const;
 
 private:

@@ -1,46 +1,29 @@
 #include "lamella/geometry/triangle_intersection.h"
+#include "lamella/mesh/detail/candidate_edges.h"
 #include "lamella/mesh/detail/face_shape.h"
 #include "lamella/mesh/detail/sectors.h"
 #include "lamella/mesh/detail/workbench.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace lamella::mesh::detail {
 namespace {
 
-struct ShortEdge {
-    double squared_length;
-    VertexId v, w;  // v < w
-};
-
 /// Edges shorter than allowed, or opposite a very sharp angle; shortest first.
-std::vector<ShortEdge> short_edges(const Workbench& bench) {
+std::vector<CandidateEdge> short_edges(const Workbench& bench) {
     static const double kSharp = cot_of_degrees(10.0);
     const EditMesh& mesh = bench.mesh;
     const double shortest = bench.length(bench.options.shortest_edge);
     const double opposite_sharp = bench.length(1.0);
-    std::vector<ShortEdge> edges;
-    for (const FaceId f : mesh.mesh().faces.ids()) {
-        if (!mesh.alive(f)) continue;
-        const auto& u = mesh.face(f).vertices;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const VertexId v = u[k];
-            const VertexId w = u[(k + 1) % 3];
-            if (mesh.on_wire(v) && mesh.on_wire(w)) continue;
-            const double squared = squared_norm(mesh.at(w) - mesh.at(v));
-            const bool too_short = squared < shortest * shortest;
-            if (!too_short && squared > opposite_sharp * opposite_sharp) continue;
-            if (!too_short && cot_at(mesh.at(u[(k + 2) % 3]), mesh.at(v), mesh.at(w)) < kSharp) continue;
-            edges.push_back({squared, std::min(v, w), std::max(v, w)});
-        }
-    }
-    std::sort(edges.begin(), edges.end(), [](const ShortEdge& a, const ShortEdge& b) {
-        if (a.squared_length != b.squared_length) return a.squared_length < b.squared_length;
-        return a.v != b.v ? a.v < b.v : a.w < b.w;
-    });
-    const auto same = [](const ShortEdge& a, const ShortEdge& b) { return a.v == b.v && a.w == b.w; };
-    edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
-    return edges;
+    return candidate_edges(
+        mesh,
+        [&](double squared, VertexId v, VertexId w, VertexId opposite) {
+            if (squared < shortest * shortest) return true;
+            return squared <= opposite_sharp * opposite_sharp &&
+                   cot_at(mesh.at(opposite), mesh.at(v), mesh.at(w)) >= kSharp;
+        },
+        std::less<>());
 }
 
 using RegionList = SmallVector<RegionId, 8>;
@@ -80,7 +63,7 @@ public:
 
 private:
     bool try_at(const Vec3& place, double weight_of_gone);
-    bool identify(const Vec3& place);
+    bool moors_a_region() const;
     bool turns_too_far() const;
     bool sweeps_through_film(VertexId v, const Vec3& from, const Vec3& to) const;
     bool stays_regular();
@@ -133,31 +116,18 @@ Collapse::Collapse(Workbench& bench, VertexId v, VertexId w) : bench_(bench), me
 }
 
 bool Collapse::run() {
-    if (mesh_.on_wire(kept_)) {
-        // A triple line may slide along a wire: one that were tied to a vertex of it could not.
-        const bool ties = std::any_of(beyond_gone_.begin(), beyond_gone_.end(),
-                                      [&](RegionId r) { return !beyond_kept_.contains(r); });
-        return !ties && try_at(kept_at_, 0.0);
-    }
+    if (mesh_.on_wire(kept_)) return !moors_a_region() && try_at(kept_at_, 0.0);
     if (!same_rank_) return try_at(kept_at_, 0.0);
     return try_at(0.5 * (kept_at_ + gone_at_), 0.5) || try_at(kept_at_, 0.0) || try_at(gone_at_, 1.0);
 }
 
-/// Makes the two ends one vertex at `place`. @returns false when flaps appear that do not fit
-bool Collapse::identify(const Vec3& place) {
-    const FaceList faces = mesh_.faces_at(gone_);
-    for (const FaceId f : faces) {
-        Face face = mesh_.face(f);
-        if (face.has(kept_)) {
-            mesh_.kill_face(f);
-            continue;
-        }
-        for (VertexId& v : face.vertices)
-            if (v == gone_) v = kept_;
-        mesh_.set_face(f, face);
-    }
-    mesh_.move_vertex(kept_, place);
-    return cancel_flaps(mesh_, kept_);
+/// The wire vertex that stays would come to lie at a region that it did not touch: a triple line would hop onto the wire,
+/// or along it from where it ends, and nothing parts vertices of wires again.
+bool Collapse::moors_a_region() const {
+    const RegionList at_wire = regions_of(mesh_, mesh_.faces_at(kept_));
+    for (const RegionId r : beyond_gone_)
+        if (!at_wire.contains(r)) return true;
+    return false;
 }
 
 bool Collapse::turns_too_far() const {
@@ -230,7 +200,7 @@ bool Collapse::try_at(const Vec3& place, double weight_of_gone) {
     const bool tiny = length_ < bench_.length(bench_.options.irregular_edge);
     const double sharpest = std::max(tiny ? kSharpestOfShort : kSharpest, 1.001 * sharpest_before_);
     mesh_.begin();
-    if (!identify(place)) {
+    if (!identify(mesh_, kept_, gone_, place)) {
         mesh_.rollback();
         return false;
     }
@@ -257,7 +227,7 @@ bool Collapse::try_at(const Vec3& place, double weight_of_gone) {
     bench_.resample(kept_, {kept_, gone_}, {1.0 - weight_of_gone, weight_of_gone});
     ++bench_.report.collapses;
     if (parted) {
-        bench_.resample(parted->copy, {kept_}, {1.0});
+        bench_.resample(parted->copy, {parted->vertex}, {1.0});
         bench_.events.push_back(parted->event);
         ++bench_.report.separations;
     }
@@ -269,7 +239,7 @@ bool Collapse::try_at(const Vec3& place, double weight_of_gone) {
 
 void collapse_short_edges(Workbench& bench) {
     EditMesh& mesh = bench.mesh;
-    for (const ShortEdge& edge : short_edges(bench)) {
+    for (const CandidateEdge& edge : short_edges(bench)) {
         if (mesh.faces_on(edge.v, edge.w).empty()) continue;
         // An earlier collapse may have moved an end.
         const double squared = squared_norm(mesh.at(edge.v) - mesh.at(edge.w));

@@ -24,8 +24,9 @@ void erase_sorted(FaceList& list, FaceId f) {
 }  // namespace
 
 EditMesh::EditMesh(FoamMesh mesh, double cell) : mesh_(std::move(mesh)), cell_(cell), grid_(cell, 64) {
+    suspect_.assign(mesh_.position.size(), 1);
     rebuild_lists();
-    rebuild_grid();
+    index_faces();
 }
 
 Box EditMesh::box(FaceId f) const {
@@ -70,7 +71,7 @@ void EditMesh::touch(FaceId f) {
 }
 
 void EditMesh::begin() {
-    LAMELLA_ASSERT(log_.empty());
+    LAMELLA_ASSERT(log_.empty() && indexed_);
     ++transaction_;
     touched_.clear();
     starved_before_ = starved_;
@@ -79,6 +80,7 @@ void EditMesh::begin() {
 VertexId EditMesh::add_vertex(const Vec3& at, bool on_wire) {
     const VertexId v = mesh_.add_vertex(at, on_wire);
     faces_at_.push_back({});
+    suspect_.push_back(1);
     log_.push_back({Edit::kAddVertex, static_cast<std::uint32_t>(v), {}, {}});
     return v;
 }
@@ -111,8 +113,13 @@ void EditMesh::kill_face(FaceId f) { set_face(f, kDead); }
 void EditMesh::commit() {
     for (const FaceId f : touched_) {
         if (grid_.holds(f)) grid_.erase(f);
-        if (alive(f)) grid_.insert(f, box(f));
+        if (!alive(f)) continue;
+        grid_.insert(f, box(f));
+        for (const VertexId v : face(f).vertices) suspect_[v] = 1;
     }
+    for (const LogEntry& entry : log_)
+        if (entry.edit == Edit::kSetFace)
+            for (const VertexId v : entry.face.vertices) suspect_[v] = 1;
     log_.clear();
 }
 
@@ -126,6 +133,7 @@ void EditMesh::rollback_to(std::size_t mark) {
                 mesh_.position.pop_back();
                 mesh_.on_wire.pop_back();
                 faces_at_.pop_back();
+                suspect_.pop_back();
                 break;
             case Edit::kMoveVertex:
                 mesh_.position[v] = entry.position;
@@ -151,11 +159,13 @@ void EditMesh::rollback_to(std::size_t mark) {
 
 void EditMesh::set_positions(const IdVector<VertexId, Vec3>& position) {
     mesh_.position = position;
-    rebuild_grid();
+    indexed_ = false;
 }
 
-void EditMesh::rebuild_grid() {
-    grid_ = FaceGrid(cell_, 2 * mesh_.faces.size());
+void EditMesh::index_faces() {
+    if (indexed_) return;
+    indexed_ = true;
+    grid_.clear(2 * mesh_.faces.size());
     for (const FaceId f : mesh_.faces.ids())
         if (alive(f)) grid_.insert(f, box(f));
 }
@@ -174,9 +184,13 @@ EditMesh::Maps EditMesh::compact() {
     Maps maps{IdVector<VertexId, VertexId>(mesh_.position.size(), kNoVertex),
               IdVector<FaceId, FaceId>(mesh_.faces.size(), kNoFace)};
     FoamMesh kept;
+    IdVector<VertexId, std::uint8_t> suspect;
     kept.regions = mesh_.regions;
     for (const VertexId v : mesh_.position.ids())
-        if (!faces_at_[v].empty()) maps.vertex[v] = kept.add_vertex(mesh_.position[v], on_wire(v));
+        if (!faces_at_[v].empty()) {
+            maps.vertex[v] = kept.add_vertex(mesh_.position[v], on_wire(v));
+            suspect.push_back(suspect_[v]);
+        }
     for (const FaceId f : mesh_.faces.ids()) {
         if (!alive(f)) continue;
         Face face = mesh_.faces[f];
@@ -184,8 +198,9 @@ EditMesh::Maps EditMesh::compact() {
         maps.face[f] = kept.faces.push_back(face);
     }
     mesh_ = std::move(kept);
+    suspect_ = std::move(suspect);
     rebuild_lists();
-    rebuild_grid();
+    indexed_ = false;
     return maps;
 }
 

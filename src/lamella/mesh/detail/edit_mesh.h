@@ -36,7 +36,10 @@ public:
     const FaceList& faces_at(VertexId v) const { return faces_at_[v]; }
     /// The faces that have both vertices, ascending.
     SmallVector<FaceId, 8> faces_on(VertexId v, VertexId w) const;
+    /// Which faces are near a place. Only between `index_faces` and the next `set_positions` or `compact`.
     const FaceGrid& grid() const { return grid_; }
+    /// Brings the grid up to date; needed before the first transaction after a motion or a compaction.
+    void index_faces();
     double cell() const { return cell_; }
     /// Sides of faces that belong to a region.
     std::size_t sides(RegionId r) const { return sides_[r]; }
@@ -60,6 +63,11 @@ public:
     const std::vector<FaceId>& touched() const { return touched_; }
     bool is_touched(FaceId f) const { return stamp_[f] == transaction_; }
 
+    /// Whether the faces at v changed since `clear_suspicion(v)`: only then can v have become irregular, as that depends
+    /// on how films hang together and not on where they are. All vertices are suspect at first.
+    bool suspect(VertexId v) const { return suspect_[v] != 0; }
+    void clear_suspicion(VertexId v) { suspect_[v] = 0; }
+
     /// New positions for all vertices at once, outside of any transaction.
     void set_positions(const IdVector<VertexId, Vec3>& position);
 
@@ -82,14 +90,15 @@ private:
     void attach(FaceId f);
     void detach(FaceId f);
     void touch(FaceId f);
-    void rebuild_grid();
     void rebuild_lists();
 
     FoamMesh mesh_;
     double cell_;
     IdVector<VertexId, FaceList> faces_at_;
+    IdVector<VertexId, std::uint8_t> suspect_;
     IdVector<RegionId, std::size_t> sides_;
     FaceGrid grid_;
+    bool indexed_ = false;
     std::size_t starved_ = 0;  // regions with fewer than four sides
     std::size_t starved_before_ = 0;
     std::vector<LogEntry> log_;

@@ -4,8 +4,16 @@
 
 namespace lamella::mesh::detail {
 
-FaceGrid::FaceGrid(double cell, std::size_t faces)
-    : inverse_cell_(1.0 / cell), mask_(std::bit_ceil(std::max<std::size_t>(faces, 64)) - 1), buckets_(mask_ + 1) {}
+FaceGrid::FaceGrid(double cell, std::size_t faces) : inverse_cell_(1.0 / cell) { clear(faces); }
+
+void FaceGrid::clear(std::size_t faces) {
+    const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(faces, 64));
+    mask_ = buckets - 1;
+    for (auto& bucket : buckets_) bucket.clear();
+    buckets_.resize(buckets);
+    boxes_.clear();
+    present_.clear();
+}
 
 /// Two cells of a box may share a bucket: a face stands in it once.
 template <class Visit>

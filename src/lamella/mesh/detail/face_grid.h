@@ -41,6 +41,8 @@ public:
     /// @param faces how many faces to expect
     FaceGrid(double cell, std::size_t faces);
 
+    /// Takes all faces out and prepares for about so many.
+    void clear(std::size_t faces);
     void insert(FaceId face, const Box& box);
     void erase(FaceId face);
     bool holds(FaceId face) const { return index(face) < boxes_.size() && present_[face] != 0; }
@@ -86,7 +88,7 @@ private:
     void for_each_bucket(const Box& box, Visit&& visit);
 
     double inverse_cell_;
-    std::size_t mask_;
+    std::size_t mask_ = 0;
     std::vector<SmallVector<FaceId, 7>> buckets_;
     IdVector<FaceId, Box> boxes_;
     IdVector<FaceId, std::uint8_t> present_;

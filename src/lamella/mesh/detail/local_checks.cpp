@@ -70,20 +70,31 @@ bool label_cycles(const EditMesh& mesh) {
     return true;
 }
 
+/// One search of the grid for all touched faces: they lie close together.
 bool intersections(const EditMesh& mesh) {
-    const auto& touched = mesh.touched();
-    SmallVector<Box, 24> boxes;
-    for (std::size_t i = 0; i < touched.size(); ++i) {
-        boxes.push_back(mesh.alive(touched[i]) ? mesh.box(touched[i]) : Box{});
-        if (!mesh.alive(touched[i])) continue;
+    struct Near {
+        FaceId face;
+        Box box;
+    };
+    SmallVector<Near, 24> changed;
+    for (const FaceId f : mesh.touched())
+        if (mesh.alive(f)) changed.push_back({f, mesh.box(f)});
+    if (changed.empty()) return false;
+    Box all = changed[0].box;
+    for (const Near& a : changed) {
+        all.include(a.box.low);
+        all.include(a.box.high);
+    }
+    SmallVector<Near, 64> around;
+    mesh.grid().query(all, [&](FaceId g) {
+        if (!mesh.is_touched(g)) around.push_back({g, mesh.grid().box(g)});
+    });
+    for (std::size_t i = 0; i < changed.size(); ++i) {
+        const Near& a = changed[i];
         for (std::size_t j = 0; j < i; ++j)
-            if (mesh.alive(touched[j]) && boxes[i].overlaps(boxes[j]) && faces_meet(mesh, touched[i], touched[j]))
-                return true;
-        bool meets = false;
-        mesh.grid().query(boxes[i], [&](FaceId g) {
-            if (!meets && !mesh.is_touched(g)) meets = faces_meet(mesh, touched[i], g);
-        });
-        if (meets) return true;
+            if (a.box.overlaps(changed[j].box) && faces_meet(mesh, a.face, changed[j].face)) return true;
+        for (const Near& b : around)
+            if (a.box.overlaps(b.box) && faces_meet(mesh, a.face, b.face)) return true;
     }
     return false;
 }
@@ -121,6 +132,22 @@ bool cancel_flaps(EditMesh& mesh, VertexId v) {
             }
     }
     return true;
+}
+
+bool identify(EditMesh& mesh, VertexId kept, VertexId gone, const Vec3& place) {
+    const FaceList faces = mesh.faces_at(gone);
+    for (const FaceId f : faces) {
+        Face face = mesh.face(f);
+        if (face.has(kept)) {
+            mesh.kill_face(f);
+            continue;
+        }
+        for (VertexId& v : face.vertices)
+            if (v == gone) v = kept;
+        mesh.set_face(f, face);
+    }
+    mesh.move_vertex(kept, place);
+    return cancel_flaps(mesh, kept);
 }
 
 void StarVolumes::add(RegionId r, double volume) {

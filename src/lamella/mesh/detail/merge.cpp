@@ -1,9 +1,11 @@
 #include "lamella/geometry/distance.h"
+#include "lamella/mesh/detail/face_pairs.h"
 #include "lamella/mesh/detail/face_shape.h"
 #include "lamella/mesh/detail/sectors.h"
 #include "lamella/mesh/detail/workbench.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lamella::mesh::detail {
 namespace {
@@ -13,23 +15,30 @@ struct ClosePair {
     FaceId f, g;  // f < g
 };
 
+/// Where a face is and looks.
+struct Pose {
+    Vec3 normal;  // of length 1
+    Vec3 center;
+};
+
+Pose pose(const EditMesh& mesh, FaceId f) {
+    const auto x = mesh.corners(f);
+    const Vec3 n = area_vector(x);
+    return {(1.0 / norm(n)) * n, (1.0 / 3.0) * (x[0] + x[1] + x[2])};
+}
+
 /// Some side of f and some side of g carry the same region, look at each other through it, and are nearly parallel.
-bool face_each_other(const EditMesh& mesh, FaceId f, FaceId g) {
-    const Face& a = mesh.face(f);
-    const Face& b = mesh.face(g);
+bool face_each_other(const Face& a, const Pose& of_a, const Face& b, const Pose& of_b) {
     if (a.back != b.back && a.back != b.front && a.front != b.back && a.front != b.front) return false;
-    const auto s = mesh.corners(f);
-    const auto t = mesh.corners(g);
-    const Vec3 m = area_vector(s);
-    const Vec3 n = area_vector(t);
-    const double cosine = dot(m, n) / (norm(m) * norm(n));
+    const double cosine = dot(of_a.normal, of_b.normal);
     if (!(std::abs(cosine) > 0.75)) return false;
-    const Vec3 between = (1.0 / 3.0) * ((t[0] + t[1] + t[2]) - (s[0] + s[1] + s[2]));
+    const Vec3 between = of_b.center - of_a.center;
     for (const double side_a : {1.0, -1.0})
         for (const double side_b : {1.0, -1.0}) {
             const RegionId r = side_a > 0.0 ? a.front : a.back;
             if (r != (side_b > 0.0 ? b.front : b.back)) continue;
-            if (side_a * side_b * cosine < -0.75 && side_a * dot(m, between) > 0.0 && side_b * dot(n, between) < 0.0)
+            if (side_a * side_b * cosine < -0.75 && side_a * dot(of_a.normal, between) > 0.0 &&
+                side_b * dot(of_b.normal, between) < 0.0)
                 return true;
         }
     return false;
@@ -61,15 +70,21 @@ double squared_gap(const EditMesh& mesh, FaceId f, FaceId g) {
 std::vector<ClosePair> close_pairs(const Workbench& bench) {
     const EditMesh& mesh = bench.mesh;
     const double reach = bench.length(bench.options.merge_distance);
-    std::vector<ClosePair> pairs;
-    for (const FaceId f : mesh.mesh().faces.ids()) {
+    IdVector<FaceId, Pose> poses(mesh.mesh().faces.size());
+    std::vector<FacePairs::Item> boxes;
+    boxes.reserve(poses.size());
+    for (const FaceId f : poses.ids()) {
         if (!mesh.alive(f)) continue;
-        mesh.grid().query(mesh.grid().box(f).inflated(reach), [&](FaceId g) {
-            if (g <= f || !face_each_other(mesh, f, g)) return;
-            const double squared = squared_gap(mesh, f, g);
-            if (squared < reach * reach) pairs.push_back({squared, f, g});
-        });
+        poses[f] = pose(mesh, f);
+        boxes.push_back({f, mesh.box(f).inflated(0.5 * reach)});
     }
+    const FacePairs near(boxes);
+    std::vector<ClosePair> pairs;
+    near.for_each(0, near.size(), [&](FaceId f, FaceId g) {
+        if (!face_each_other(mesh.face(f), poses[f], mesh.face(g), poses[g])) return;
+        const double squared = squared_gap(mesh, f, g);
+        if (squared < reach * reach) pairs.push_back({squared, f, g});
+    });
     std::sort(pairs.begin(), pairs.end(), [](const ClosePair& a, const ClosePair& b) {
         if (a.squared_distance != b.squared_distance) return a.squared_distance < b.squared_distance;
         return a.f != b.f ? a.f < b.f : a.g < b.g;
@@ -106,24 +121,6 @@ std::optional<std::array<VertexId, 3>> match(const Workbench& bench, FaceId f, F
     return best;
 }
 
-/// Makes b and a one vertex halfway between them.
-bool identify(EditMesh& mesh, VertexId a, VertexId b) {
-    const FaceList faces = mesh.faces_at(b);
-    const Vec3 middle = 0.5 * (mesh.at(a) + mesh.at(b));
-    for (const FaceId f : faces) {
-        Face face = mesh.face(f);
-        if (face.has(a)) {
-            mesh.kill_face(f);
-            continue;
-        }
-        for (VertexId& v : face.vertices)
-            if (v == b) v = a;
-        mesh.set_face(f, face);
-    }
-    mesh.move_vertex(a, middle);
-    return cancel_flaps(mesh, a);
-}
-
 /// The two triangles become one film, or a hole where the same region lies behind both. A contact is never a point,
 /// so that no separation undoes it.
 bool merge(Workbench& bench, FaceId f, FaceId g) {
@@ -148,7 +145,8 @@ bool merge(Workbench& bench, FaceId f, FaceId g) {
     mesh.begin();
     bool fits = true;
     for (std::size_t i = 0; i < 3 && fits; ++i)
-        if (own[i] != (*partner)[i]) fits = identify(mesh, own[i], (*partner)[i]);
+        if (own[i] != (*partner)[i])
+            fits = identify(mesh, own[i], (*partner)[i], 0.5 * (mesh.at(own[i]) + mesh.at((*partner)[i])));
     if (fits)
         for (const VertexId v : own)
             if (!mesh.faces_at(v).empty() && !mesh.on_wire(v))
@@ -177,8 +175,9 @@ void merge_close_faces(Workbench& bench) {
     EditMesh& mesh = bench.mesh;
     for (const ClosePair& pair : close_pairs(bench)) {
         // An earlier merge may have changed or taken either.
-        if (!mesh.alive(pair.f) || !mesh.alive(pair.g) || !face_each_other(mesh, pair.f, pair.g)) continue;
-        merge(bench, pair.f, pair.g);
+        if (!mesh.alive(pair.f) || !mesh.alive(pair.g)) continue;
+        if (face_each_other(mesh.face(pair.f), pose(mesh, pair.f), mesh.face(pair.g), pose(mesh, pair.g)))
+            merge(bench, pair.f, pair.g);
     }
 }
 

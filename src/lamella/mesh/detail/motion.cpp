@@ -2,6 +2,7 @@
 
 #include "lamella/core/parallel.h"
 #include "lamella/geometry/distance.h"
+#include "lamella/mesh/detail/face_pairs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,25 +26,25 @@ struct Owned {
 
 class PairLimits {
 public:
-    PairLimits(const EditMesh& mesh, const IdVector<VertexId, double>& length, double longest);
-    /// Appends the limits that face f and faces with higher ids put on each other.
-    void of_face(FaceId f, std::vector<Limit>& limits) const;
+    PairLimits(const EditMesh& mesh, const IdVector<VertexId, double>& length);
+    /// Appends the limits that two faces put on each other.
+    void of_pair(FaceId f, FaceId g, std::vector<Limit>& limits) const;
+    /// Every face in a box that meets the box of each face it could reach.
+    std::vector<FacePairs::Item> boxes() const;
 
 private:
     double most(const Face& face) const {
         return std::max({length_[face.vertices[0]], length_[face.vertices[1]], length_[face.vertices[2]]});
     }
-    void of_pair(FaceId f, FaceId g, std::vector<Limit>& limits) const;
     void vertices_against_face(FaceId f, FaceId g, std::vector<Limit>& limits) const;
 
     const EditMesh& mesh_;
     const IdVector<VertexId, double>& length_;
-    double longest_;
     IdVector<FaceId, Owned> owned_;
 };
 
-PairLimits::PairLimits(const EditMesh& mesh, const IdVector<VertexId, double>& length, double longest)
-    : mesh_(mesh), length_(length), longest_(longest), owned_(mesh.mesh().faces.size()) {
+PairLimits::PairLimits(const EditMesh& mesh, const IdVector<VertexId, double>& length)
+    : mesh_(mesh), length_(length), owned_(mesh.mesh().faces.size()) {
     parallel_for(owned_.size(), [&](std::size_t i) {
         const FaceId f = static_cast<FaceId>(i);
         const auto& u = mesh_.face(f).vertices;
@@ -98,14 +99,14 @@ void PairLimits::of_pair(FaceId f, FaceId g, std::vector<Limit>& limits) const {
     }
 }
 
-void PairLimits::of_face(FaceId f, std::vector<Limit>& limits) const {
-    const double own = most(mesh_.face(f));
-    const Box& box = mesh_.grid().box(f);
-    mesh_.grid().query(box.inflated((own + longest_) / kTogether), [&](FaceId g) {
-        if (g <= f) return;
-        const double reach = (own + most(mesh_.face(g))) / kTogether;
-        if (box.inflated(reach).overlaps(mesh_.grid().box(g))) of_pair(f, g, limits);
+std::vector<FacePairs::Item> PairLimits::boxes() const {
+    const std::size_t faces = mesh_.mesh().faces.size();
+    std::vector<FacePairs::Item> items(faces);
+    parallel_for(faces, [&](std::size_t i) {
+        const FaceId f = static_cast<FaceId>(i);
+        items[i] = {f, mesh_.box(f).inflated(most(mesh_.face(f)) / kTogether)};
     });
+    return items;
 }
 
 }  // namespace
@@ -113,7 +114,6 @@ void PairLimits::of_face(FaceId f, std::vector<Limit>& limits) const {
 std::size_t limit_displacement(const EditMesh& mesh, double longest, IdVector<VertexId, Vec3>& displacement) {
     IdVector<VertexId, double> length(displacement.size());
     std::vector<std::uint8_t> held(displacement.size(), 0);
-    double largest = 0.0;
     for (const VertexId v : displacement.ids()) {
         double d = norm(displacement[v]);
         if (d > longest) {
@@ -122,13 +122,13 @@ std::size_t limit_displacement(const EditMesh& mesh, double longest, IdVector<Ve
             d = longest;
         }
         length[v] = d;
-        largest = std::max(largest, d);
     }
-    const PairLimits pairs(mesh, length, largest);
-    const std::size_t faces = mesh.mesh().faces.size();
-    std::vector<std::vector<Limit>> limits((faces + kFacesPerBlock - 1) / kFacesPerBlock);
-    parallel_blocks(faces, kFacesPerBlock, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) pairs.of_face(static_cast<FaceId>(f), limits[begin / kFacesPerBlock]);
+    const PairLimits limits_of(mesh, length);
+    const FacePairs pairs(limits_of.boxes());
+    std::vector<std::vector<Limit>> limits((pairs.size() + kFacesPerBlock - 1) / kFacesPerBlock);
+    parallel_blocks(pairs.size(), kFacesPerBlock, [&](std::size_t begin, std::size_t end) {
+        auto& block = limits[begin / kFacesPerBlock];
+        pairs.for_each(begin, end, [&](FaceId f, FaceId g) { limits_of.of_pair(f, g, block); });
     });
     IdVector<VertexId, double> allowed = length;
     for (const auto& block : limits)

@@ -144,8 +144,11 @@ void relabel(Workbench& bench) {
         while (last < pieces.size() && pieces[last].region == pieces[first].region) ++last;
         const RegionId region = pieces[first].region;
         const bool closed = mesh.regions()[region].kind == RegionKind::kClosed;
+        const double target = mesh.regions()[region].target_volume;
         std::vector<Piece*> outer, cavities;
+        double whole = 0.0;
         for (std::size_t i = first; i < last; ++i) {
+            whole += pieces[i].volume;
             if (pieces[i].open) continue;
             (pieces[i].volume > 0.0 ? outer : cavities).push_back(&pieces[i]);
         }
@@ -165,8 +168,10 @@ void relabel(Workbench& bench) {
         for (std::size_t i = closed ? 1 : 0; i < outer.size(); ++i) {
             double volume = outer[i]->volume;
             for (const Piece* cavity : inside[i]) volume += cavity->volume;
-            const RegionId fresh = mesh.add_region({RegionKind::kClosed, volume});
-            if (closed) mesh.regions()[region].target_volume -= volume;
+            // The gas is shared by volume, so that both pieces keep the pressure and neither gets less than nothing.
+            const double gas = closed ? target * volume / whole : volume;
+            const RegionId fresh = mesh.add_region({RegionKind::kClosed, gas});
+            if (closed) mesh.regions()[region].target_volume -= gas;
             give_label(mesh, *outer[i], fresh);
             for (const Piece* cavity : inside[i]) give_label(mesh, *cavity, fresh);
             bench.events.push_back(

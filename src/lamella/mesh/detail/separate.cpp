@@ -178,7 +178,7 @@ std::optional<Separation> separate_vertex(
             restore_volumes(mesh, v, before, origin, 0.5 * s);
             if (acceptable(mesh, sharpest)) {
                 const auto kind = parting.pinch ? TopologyEvent::Kind::kPinch : TopologyEvent::Kind::kT1;
-                return Separation{copy, {kind, place, parting.a, parting.b}};
+                return Separation{v, copy, {kind, place, parting.a, parting.b}};
             }
             mesh.rollback_to(mark);
         }
@@ -191,8 +191,13 @@ void separate_vertices(Workbench& bench) {
     constexpr int kMostPasses = 5;
     EditMesh& mesh = bench.mesh;
     std::vector<VertexId> irregular;
-    for (const VertexId v : mesh.mesh().position.ids())
-        if (!mesh.faces_at(v).empty() && !mesh.on_wire(v) && !is_regular(mesh, v)) irregular.push_back(v);
+    for (const VertexId v : mesh.mesh().position.ids()) {
+        if (!mesh.suspect(v) || mesh.faces_at(v).empty() || mesh.on_wire(v)) continue;
+        if (is_regular(mesh, v))
+            mesh.clear_suspicion(v);
+        else
+            irregular.push_back(v);
+    }
     for (int pass = 0; pass < kMostPasses && !irregular.empty(); ++pass) {
         std::vector<VertexId> left;
         bool any = false;
@@ -211,6 +216,7 @@ void separate_vertices(Workbench& bench) {
                 continue;
             }
             mesh.commit();
+            bench.resample(v, {v}, {1.0});
             bench.resample(parted->copy, {v}, {1.0});
             bench.events.push_back(parted->event);
             ++bench.report.separations;

@@ -1,44 +1,26 @@
+#include "lamella/mesh/detail/candidate_edges.h"
 #include "lamella/mesh/detail/face_shape.h"
 #include "lamella/mesh/detail/workbench.h"
 
-#include <algorithm>
+#include <functional>
 
 namespace lamella::mesh::detail {
 namespace {
 
-struct LongEdge {
-    double squared_length;
-    VertexId v, w;  // v < w
-};
-
 /// Edges longer than allowed, or opposite a very wide angle; longest first.
-std::vector<LongEdge> long_edges(const Workbench& bench) {
+std::vector<CandidateEdge> long_edges(const Workbench& bench) {
     static const double kWide = cot_of_degrees(157.0);
     const EditMesh& mesh = bench.mesh;
     const double longest = bench.length(bench.options.longest_edge);
     const double opposite_wide = bench.length(0.9);
-    std::vector<LongEdge> edges;
-    for (const FaceId f : mesh.mesh().faces.ids()) {
-        if (!mesh.alive(f)) continue;
-        const auto& u = mesh.face(f).vertices;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const VertexId v = u[k];
-            const VertexId w = u[(k + 1) % 3];
-            if (mesh.on_wire(v) && mesh.on_wire(w)) continue;
-            const double squared = squared_norm(mesh.at(w) - mesh.at(v));
-            const bool too_long = squared > longest * longest;
-            if (!too_long && squared < opposite_wide * opposite_wide) continue;
-            if (!too_long && cot_at(mesh.at(u[(k + 2) % 3]), mesh.at(v), mesh.at(w)) > kWide) continue;
-            edges.push_back({squared, std::min(v, w), std::max(v, w)});
-        }
-    }
-    std::sort(edges.begin(), edges.end(), [](const LongEdge& a, const LongEdge& b) {
-        if (a.squared_length != b.squared_length) return a.squared_length > b.squared_length;
-        return a.v != b.v ? a.v < b.v : a.w < b.w;
-    });
-    const auto same = [](const LongEdge& a, const LongEdge& b) { return a.v == b.v && a.w == b.w; };
-    edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
-    return edges;
+    return candidate_edges(
+        mesh,
+        [&](double squared, VertexId v, VertexId w, VertexId opposite) {
+            if (squared > longest * longest) return true;
+            return squared >= opposite_wide * opposite_wide &&
+                   cot_at(mesh.at(opposite), mesh.at(v), mesh.at(w)) <= kWide;
+        },
+        std::greater<>());
 }
 
 /// Every face of the edge becomes two. No volume changes and nothing can intersect: no checks are needed.
@@ -67,7 +49,7 @@ void split_long_edges(Workbench& bench) {
     constexpr int kMostPasses = 12;  // each halves what is too long; motion needs one, a coarse start a few
     for (int pass = 0; pass < kMostPasses; ++pass) {
         bool any = false;
-        for (const LongEdge& edge : long_edges(bench)) {
+        for (const CandidateEdge& edge : long_edges(bench)) {
             if (bench.mesh.faces_on(edge.v, edge.w).empty()) continue;
             split(bench, edge.v, edge.w);
             any = true;

@@ -32,6 +32,8 @@ bool acceptable(const EditMesh& mesh, double sharpest);
 /// Two faces with the same three vertices, and on: they cancel, or one face between the outer regions replaces them.
 /// @returns false when their labels do not fit (the caller rolls back)
 bool cancel_flaps(EditMesh& mesh, VertexId v);
+/// Makes two vertices one at `place`; `gone` loses all its faces. @returns false when flaps appear that do not fit
+bool identify(EditMesh& mesh, VertexId kept, VertexId gone, const Vec3& place);
 
 /// Moves a free vertex such that the volumes around it are those of `before`: the shortest way, at most `farthest`.
 /// See StarVolumes.
@@ -52,7 +54,7 @@ void flip_edges(Workbench& bench);
 /// Within the open transaction: parts a vertex where sectors without a common face meet into two, the way that saves
 /// most area and passes the checks. `before`: volumes of the touched faces and the star of v before the transaction.
 struct Separation {
-    VertexId copy;
+    VertexId vertex, copy;
     TopologyEvent event;
 };
 std::optional<Separation> separate_vertex(
