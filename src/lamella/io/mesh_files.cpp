@@ -26,8 +26,16 @@ Parser parser_for(const std::filesystem::path& path) {
 
 constexpr std::size_t kLargestFile = std::size_t{1} << 30;
 
+void require_film_file(const std::string& name) {
+    if (!is_film_file(name)) throw InputError({name, 0, 0}, "is no file of films; .fe, .obj and .ply are");
+}
+
+}  // namespace
+
+bool is_film_file(const std::filesystem::path& path) { return parser_for(path) != nullptr; }
+
 /// In pieces, so that a file without end (/dev/zero) or of a false size takes no more memory than it has bytes.
-std::string read_all(const std::filesystem::path& path) {
+std::string film_file_contents(const std::filesystem::path& path) {
     std::error_code unreadable;
     if (std::filesystem::is_directory(path, unreadable))
         throw InputError({path.string(), 0, 0}, "is a directory; a file is expected");
@@ -47,14 +55,6 @@ std::string read_all(const std::filesystem::path& path) {
     return contents;
 }
 
-void require_film_file(const std::string& name) {
-    if (!is_film_file(name)) throw InputError({name, 0, 0}, "is no file of films; .fe, .obj and .ply are");
-}
-
-}  // namespace
-
-bool is_film_file(const std::filesystem::path& path) { return parser_for(path) != nullptr; }
-
 FilmFile parse_films(std::string_view contents, const std::string& name) {
     require_film_file(name);
     return parser_for(name)(contents, name);
@@ -62,7 +62,7 @@ FilmFile parse_films(std::string_view contents, const std::string& name) {
 
 FilmFile read_films(const std::filesystem::path& path) {
     require_film_file(path.string());
-    return parse_films(read_all(path), path.string());
+    return parse_films(film_file_contents(path), path.string());
 }
 
 }  // namespace lamella::io

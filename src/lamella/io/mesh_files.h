@@ -28,6 +28,9 @@ FilmFile read_films(const std::filesystem::path& path);
 /// The same from memory (tests, fuzzing); the suffix of `name` says what it is, and `name` stands for the file in messages.
 FilmFile parse_films(std::string_view contents, const std::string& name);
 
+/// The bytes of such a file, at most 1 GiB. @throws InputError, IoError
+std::string film_file_contents(const std::filesystem::path& path);
+
 /// Whether a file of this name is one for read_films: .fe, .obj or .ply.
 bool is_film_file(const std::filesystem::path& path);
 

@@ -8,6 +8,7 @@
 #include "lamella/mesh/shapes/power_cluster.h"
 #include "lamella/mesh/shapes/sphere.h"
 #include "lamella/mesh/shapes/standard_clusters.h"
+#include "lamella/scene/detail/film_from_file.h"
 #include "lamella/scene/detail/toml_writer.h"
 #include "lamella/sim/read_options.h"
 
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace lamella::scene {
 namespace {
@@ -129,6 +131,8 @@ FoamMesh film_of(const FilmTable& film, double h) {
             return mesh::periodic_foam(mesh::PeriodicFoam::kKelvin, film.volume, h);
         case FilmShape::kWeairePhelan:
             return mesh::periodic_foam(mesh::PeriodicFoam::kWeairePhelan, film.volume, h);
+        case FilmShape::kMesh:
+            break;  // read before the edge length is known: films_of_files
     }
     return {};
 }
@@ -150,11 +154,31 @@ double film_size(const FilmTable& film) {
     }
 }
 
-double default_edge_length(const FilmTables& tables, const std::vector<mesh::Ball>& balls) {
+/// What the files of [[film]] hold; empty for films of known shapes.
+std::vector<io::FilmFile> films_of_files(const FilmTables& tables, const sim::Node& root) {
+    std::vector<io::FilmFile> files(tables.films.size());
+    const std::filesystem::path folder = std::filesystem::path(root.where.file).parent_path();
+    for (std::size_t k = 0; k < files.size(); ++k) {
+        const FilmTable& film = tables.films[k];
+        const bool mesh = film.shape == FilmShape::kMesh;
+        if (mesh == film.file.empty())
+            throw InputError(place(root, "film", k), mesh ? "film: shape = \"mesh\" needs file = \"...\""
+                                                          : "film.file goes with shape = \"mesh\" only");
+        if (mesh)
+            files[k] = at_table(place(root, "film", k), "film",
+                                [&] { return detail::scaled_films(folder / film.file, film.scale, film.center); });
+    }
+    return files;
+}
+
+double default_edge_length(const FilmTables& tables, const std::vector<mesh::Ball>& balls,
+                           const std::vector<io::FilmFile>& files) {
     double edge = 0.0;
     const auto at_most = [&](double length) { edge = edge == 0.0 ? length : std::min(edge, length); };
     for (const mesh::Ball& ball : balls) at_most(0.25 * ball.radius);
-    for (const FilmTable& film : tables.films) at_most(0.05 * film_size(film));
+    for (std::size_t k = 0; k < files.size(); ++k)
+        at_most(tables.films[k].shape == FilmShape::kMesh ? detail::edge_length_for(files[k].mesh)
+                                                          : 0.05 * film_size(tables.films[k]));
     return edge;
 }
 
@@ -184,6 +208,15 @@ std::vector<film::Event> events_of(const FilmTables& tables, const FoamMesh& mes
     }
     std::stable_sort(events.begin(), events.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
     return events;
+}
+
+/// Those of films that are about to be added: their regions will follow those that are there.
+void add_tensions(film::Problem& problem, const std::vector<io::PairTension>& tensions) {
+    const std::size_t before = problem.mesh.regions.size() - 1;
+    const auto moved = [&](mesh::RegionId r) {
+        return r == mesh::kOutside ? r : static_cast<mesh::RegionId>(index(r) + before);
+    };
+    for (const io::PairTension& t : tensions) problem.tensions.push_back({moved(t.a), moved(t.b), t.factor});
 }
 
 template <class Table>
@@ -238,8 +271,9 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
     problem.material = tables.material;
     std::vector<mesh::Ball> all = balls;
     all.insert(all.end(), cluster.begin(), cluster.end());
+    std::vector<io::FilmFile> files = films_of_files(tables, root);
     problem.edge_length = tables.resolution.edge_length > 0.0 ? tables.resolution.edge_length
-                                                              : default_edge_length(tables, all);
+                                                              : default_edge_length(tables, all, files);
     const double h = problem.edge_length;
     problem.mesh.regions.push_back({RegionKind::kOpen, 0.0});
     const auto add = [&](FoamMesh part) {
@@ -248,7 +282,12 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
     };
     if (!balls.empty()) at_table(place(root, "bubble", 0), "bubble", [&] { add(bubbles_of(balls, h)); });
     for (std::size_t k = 0; k < tables.films.size(); ++k)
-        at_table(place(root, "film", k), "film", [&] { add(film_of(tables.films[k], h)); });
+        at_table(place(root, "film", k), "film", [&] {
+            if (tables.films[k].shape != FilmShape::kMesh) return add(film_of(tables.films[k], h));
+            detail::refine_films(files[k].mesh, h);
+            add_tensions(problem, files[k].tensions);
+            add(std::move(files[k].mesh));
+        });
     if (!cluster.empty()) at_table(place(root, "foam", 0), "foam", [&] { add(bubbles_of(cluster, h)); });
     mesh::require_sound(problem.mesh, root.where.file.empty() ? "the films" : root.where.file);
 
