@@ -53,6 +53,13 @@ private:
 
     void vertices() {
         for (const auto& vertex : file_.vertices) mesh_.add_vertex(vertex.at, vertex.held);
+        for (std::size_t e = 0; e < file_.edges.size(); ++e) {
+            inner_.push_back(mesh_.position.size());
+            for (const Vec3& place : file_.edges[e].inner) {
+                mesh_.add_vertex(place, true);
+                added_.push_back(fmt::format("on edge {}", file_.edges[e].number));
+            }
+        }
         for (const auto& edge : file_.edges)
             if (edge.held) mesh_.on_wire[static_cast<VertexId>(edge.tail)] = mesh_.on_wire[static_cast<VertexId>(edge.head)] = 1;
         if (file_.torus) mesh_.period = file_.period;
@@ -78,6 +85,8 @@ private:
                 refuse(face.line, fmt::format("face {}: edge {} does not begin where edge {} ends", face.number,
                                               next.number, edge.number));
             corners.push_back({static_cast<VertexId>(forward ? edge.tail : edge.head), image});
+            for (std::size_t i = 0; i < edge.inner.size(); ++i)
+                corners.push_back({static_cast<VertexId>(inner_[e] + (forward ? i : edge.inner.size() - 1 - i)), image});
             for (std::size_t a = 0; a < 3; ++a) {
                 image[a] += forward ? edge.wrap[a] : -edge.wrap[a];
                 constexpr int kFarthest = 100;
@@ -118,14 +127,14 @@ private:
         Vec3 middle;
         for (const Corner& corner : loop) middle += place(corner) / static_cast<double>(loop.size());
         const Corner center{mesh_.add_vertex(middle, face.held), {}};
-        middle_of_.push_back(f);
+        added_.push_back(fmt::format("in the middle of face {}", face.number));
         for (std::size_t k = 0; k < loop.size(); ++k) triangle(f, loop[k], loop[(k + 1) % loop.size()], center);
     }
 
     std::string vertex_name(VertexId v) const {
         const std::size_t i = index(v);
         if (i < file_.vertices.size()) return std::to_string(file_.vertices[i].number);
-        return fmt::format("in the middle of face {}", file_.faces[middle_of_[i - file_.vertices.size()]].number);
+        return added_[i - file_.vertices.size()];
     }
     std::string face_name(FaceId f) const { return std::to_string(file_.faces[origin_[index(f)]].number); }
 
@@ -224,7 +233,8 @@ private:
     FoamMesh mesh_;
     std::vector<std::size_t> origin_;     ///< of each triangle: the face of the file
     std::vector<std::size_t> first_;      ///< of each face of the file: its first triangle
-    std::vector<std::size_t> middle_of_;  ///< of each added vertex: the face of the file
+    std::vector<std::size_t> inner_;      ///< of each edge of the file: its first added vertex
+    std::vector<std::string> added_;      ///< of each added vertex: where it is
 };
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <unordered_map>
 #include <utility>
@@ -192,7 +194,9 @@ private:
         }
         if (on_curve) {
             lexer_.next();
-            vertex.at = on_boundary(numbers[0], in);
+            const Boundary& curve = find_boundary(in);
+            vertex.at = on_boundary(curve, numbers[0]);
+            on_curve_[file_.vertices.size()] = {&curve, numbers[0]};
             vertex.held = true;  // sliding along the curve that it lies on changes no film
         } else {
             vertex.at = {{numbers[0], numbers[1], numbers[2]}};
@@ -210,11 +214,10 @@ private:
         return it->second;
     }
 
-    Vec3 on_boundary(double parameter, const std::string& in) {
+    Vec3 on_boundary(const Boundary& curve, double parameter) const {
         EvolverValues values = values_;
         values["p1"] = parameter;
         Vec3 at;
-        const Boundary& curve = find_boundary(in);
         for (std::size_t k = 0; k < 3; ++k) {
             EvolverLexer formula = curve.coordinates[k];
             at[k] = evolver_expression(formula, values);
@@ -224,9 +227,31 @@ private:
         return at;
     }
 
+    /// Places on the curve between the ends of an edge, so close that it turns by no more than about 30 degrees from one to
+    /// the next. The parameter of a closed curve may jump by a turn between the ends.
+    std::vector<Vec3> inner_places(const EvolverDatafile::Edge& edge, const Boundary& curve) const {
+        const auto tail = on_curve_.find(edge.tail), head = on_curve_.find(edge.head);
+        if (tail == on_curve_.end() || head == on_curve_.end()) return {};
+        if (tail->second.curve != &curve || head->second.curve != &curve) return {};
+        constexpr double kTurn = 6.28318530717958647692;
+        const Vec3 a = file_.vertices[edge.tail].at, b = file_.vertices[edge.head].at;
+        const double p = tail->second.parameter;
+        double step = head->second.parameter - p;
+        for (const double other : {step - kTurn, step + kTurn})
+            if (std::abs(other) < std::abs(step) && norm(on_boundary(curve, p + other) - b) < 1e-6 * norm(b - a)) step = other;
+        const Vec3 middle = on_boundary(curve, p + 0.5 * step);
+        const Vec3 first = middle - a, second = b - middle;
+        const double turn = 2.0 * std::atan2(norm(cross(first, second)), dot(first, second));
+        constexpr double kLargest = 0.55;
+        const int pieces = std::max(1, static_cast<int>(std::ceil(turn / kLargest)));
+        std::vector<Vec3> places;
+        for (int k = 1; k < pieces; ++k) places.push_back(on_boundary(curve, p + step * k / pieces));
+        return places;
+    }
+
     void edge(std::int64_t number, int line) {
         const std::string in = fmt::format("edge {}", number);
-        EvolverDatafile::Edge edge{number, 0, 0, {}, false};
+        EvolverDatafile::Edge edge{number, 0, 0, {}, false, {}};
         for (std::size_t* end : {&edge.tail, &edge.head})
             *end = find(vertices_, evolver_integer(lexer_, 1, kLargestNumber, in), "vertex", in);
         if (edge.tail == edge.head) refuse(line, fmt::format("{} joins vertex {} with itself", in,
@@ -242,14 +267,14 @@ private:
         while (!lexer_.peek().ends_line()) {
             const EvolverToken word = lexer_.next();
             if (word.is("boundary")) {
-                find_boundary(in);
+                edge.inner = inner_places(edge, find_boundary(in));
                 edge.held = true;
             } else if (!common_attribute(word, edge.held)) {
                 refuse_word(word, in);
             }
         }
         add_number(edges_, number, file_.edges.size(), line, "edge");
-        file_.edges.push_back(edge);
+        file_.edges.push_back(std::move(edge));
     }
 
     /// Element numbers with signs, up to the first word.
@@ -310,6 +335,11 @@ private:
     EvolverDatafile file_;
     EvolverValues values_;
     std::map<std::int64_t, Boundary> boundaries_;
+    struct OnCurve {
+        const Boundary* curve;
+        double parameter;
+    };
+    std::unordered_map<std::size_t, OnCurve> on_curve_;  ///< places of vertices
     Numbers vertices_, edges_, faces_, bodies_;
 };
 

@@ -26,6 +26,7 @@ struct EvolverDatafile {
         std::size_t head;
         std::array<int, 3> wrap;  ///< periods from tail to head
         bool held;
+        std::vector<Vec3> inner;  ///< places between the ends, where it runs along a boundary curve that turns
     };
     struct EdgeUse {
         std::size_t edge;
