@@ -19,8 +19,8 @@ std::string import_films(const std::filesystem::path& path, const std::filesyste
     });
     const auto held = std::count(mesh.on_wire.begin(), mesh.on_wire.end(), std::uint8_t{1});
     const std::filesystem::path absolute = std::filesystem::absolute(path).lexically_normal();
-    const std::filesystem::path from = std::filesystem::absolute(folder).lexically_normal();
-    const std::string file = (folder.empty() ? absolute : absolute.lexically_proximate(from)).string();
+    const auto seen_from = [&] { return absolute.lexically_proximate(std::filesystem::absolute(folder).lexically_normal()); };
+    const std::string file = (folder.empty() ? absolute : seen_from()).string();
     const std::string title = path.filename().string();
     if (!detail::is_utf8(file)) throw InputError({path.parent_path().string(), 0, 0}, "the file's name is not UTF-8, so no scene can hold it");
     std::string text = fmt::format(

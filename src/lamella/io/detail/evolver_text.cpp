@@ -207,12 +207,12 @@ void EvolverLexer::read_number() {
     const char* begin = text_.data() + at_;
     const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), token_.number);
     token_.text = std::string(begin, end);
+    token_.kind = Kind::kNumber;
     if (error != std::errc{} || !std::isfinite(token_.number))
         refuse(line_, fmt::format("{} is too large or too small for a number", token_.shown()));
     at_ += static_cast<std::size_t>(end - begin);
     if (at_ < text_.size() && (is_letter(text_[at_]) || text_[at_] == '.'))
         refuse(line_, fmt::format("a number {} goes on with \"{}\"", token_.text, text_[at_]));
-    token_.kind = Kind::kNumber;
     token_.whole = token_.text.find_first_of(".eE") == std::string::npos;
 }
 

@@ -8,15 +8,34 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
+#include <vector>
 
 namespace lamella::io::detail {
 
 using mesh::FoamMesh;
 using mesh::RegionId;
 using mesh::RegionKind;
+
+namespace {
+
+void require_different_faces(const FoamMesh& mesh, const std::string& name, const mesh::ElementNames& names) {
+    std::vector<std::pair<std::array<mesh::VertexId, 3>, mesh::FaceId>> faces;
+    for (const mesh::FaceId f : mesh.faces.ids()) {
+        faces.emplace_back(mesh.faces[f].vertices, f);
+        std::sort(faces.back().first.begin(), faces.back().first.end());
+    }
+    std::sort(faces.begin(), faces.end());
+    for (std::size_t k = 1; k < faces.size(); ++k)
+        if (faces[k - 1].first == faces[k].first)
+            throw InputError({name, 0, 0}, fmt::format("faces {} and {} have the same vertices",
+                                                       names.of(faces[k - 1].second), names.of(faces[k].second)));
+}
+
+}  // namespace
 
 void require_proper_faces(const FoamMesh& mesh, const std::string& name, const mesh::ElementNames& names) {
     if (mesh.faces.empty()) throw InputError({name, 0, 0}, "there are no faces");
@@ -36,6 +55,7 @@ void require_proper_faces(const FoamMesh& mesh, const std::string& name, const m
         if (!(area > 0.0) || !std::isfinite(area))
             throw InputError({name, 0, 0}, fmt::format("face {} has no area", names.of(f)));
     }
+    if (!mesh.periodic()) require_different_faces(mesh, name, names);  // in a torus images may tell them apart
 }
 
 namespace {
