@@ -59,7 +59,7 @@ class ImportedFilms(ProgramTest):
             self.assertAlmostEqual(self.area_at_rest(scene) / CATENOID_AREA, 1.0, delta=1e-6)
 
     def test_kelvins_foam_fills_its_torus(self):
-        # 5.3063 per cell of volume 1 [KusnerSullivan96]: two cells of volume 4, each face shared.
+        # 5.3063 per cell of volume 1, twice, each face shared by two cells: docs/equilibrium.md measures it to 1e-4.
         self.assertAlmostEqual(self.area_at_rest(self.imported("kelvin.fe")) / 4.0 ** (2.0 / 3.0), 5.3063, delta=1e-3)
 
     def test_what_is_exported_comes_back_at_rest(self):
