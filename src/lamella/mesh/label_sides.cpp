@@ -1,6 +1,7 @@
 #include "lamella/mesh/label_sides.h"
 
 #include "lamella/core/error.h"
+#include "lamella/spatial/bvh.h"
 
 #include <fmt/format.h>
 
@@ -111,6 +112,55 @@ struct Candidate {
     }
 };
 
+/// Share of the full sphere that the faces of a region cover, seen from x: 1 inside of it, 0 outside.
+double winding(const FoamMesh& mesh, const std::vector<std::size_t>& sides, const Vec3& x) {
+    constexpr double kFullSphere = 12.566370614359172;
+    double angle = 0.0;
+    for (const std::size_t side : sides) {
+        const FaceId f = face_of(side);
+        const Vec3 a = mesh.corner(f, 0) - x, b = mesh.corner(f, 1) - x, c = mesh.corner(f, 2) - x;
+        const double la = norm(a), lb = norm(b), lc = norm(c);
+        const double solid = 2.0 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+        angle += side % 2 == 0 ? solid : -solid;
+    }
+    return angle / kFullSphere;
+}
+
+/// Pieces whose outside was found must lie outside: inside a closed region of other films, which region is around them
+/// only a label could say.
+void require_outside(const FoamMesh& mesh, const EdgeFaces& edges, Sets& pieces, const std::map<std::size_t, FaceId>& found,
+                     const ElementNames& names) {
+    const auto closed = closed_in(mesh, edges);
+    std::map<RegionId, std::vector<std::size_t>> sides;
+    for (std::size_t side = 0; side < 2 * mesh.faces.size(); ++side)
+        if (const RegionId r = region_of(mesh, side); closed[r] != 0) sides[r].push_back(side);
+    std::vector<RegionId> regions;
+    std::vector<spatial::Bounds> boxes;
+    for (const auto& [r, own] : sides) {
+        spatial::Bounds box{mesh.corner(face_of(own[0]), 0), mesh.corner(face_of(own[0]), 0)};
+        for (const std::size_t side : own)
+            for (std::size_t k = 0; k < 3; ++k) box.enclose({mesh.corner(face_of(side), k), mesh.corner(face_of(side), k)});
+        regions.push_back(r);
+        boxes.push_back(box);
+    }
+    if (boxes.empty()) return;
+    const spatial::BoxTree tree(boxes);
+    for (const auto& [piece, face] : found) {
+        const Vec3 x = mesh.corner(face, 0);
+        tree.query({x, x}, [&, piece = piece, face = face](std::size_t k) {
+            const std::vector<std::size_t>& around_it = sides.at(regions[k]);
+            const bool own = std::any_of(around_it.begin(), around_it.end(), [&](std::size_t side) {
+                return pieces.of(index(mesh.faces[face_of(side)].vertices[0])) == piece;
+            });
+            if (!own && winding(mesh, around_it, x) > 0.5)
+                throw InputError(fmt::format("face {} lies inside region {}, behind face {}, but no label says which region"
+                                             " is around it", names.of(face), index(regions[k]),
+                                             names.of(face_of(around_it[0]))));
+            return true;
+        });
+    }
+}
+
 }  // namespace
 
 void label_sides(FoamMesh& mesh, const EdgeFaces& edges, const ElementNames& names) {
@@ -140,10 +190,12 @@ void label_sides(FoamMesh& mesh, const EdgeFaces& edges, const ElementNames& nam
         candidate.fronts += side % 2 == 0 ? -1 : 1;
     }
     std::map<std::size_t, RegionId> region;
+    std::map<std::size_t, FaceId> found;  // piece -> a face at its outside
     for (const auto& [piece, candidates] : unnamed) {
         const auto outside = std::min_element(candidates.begin(), candidates.end(),
                                               [](const auto& a, const auto& b) { return a.second.before(b.second); });
         region[outside->first] = kOutside;
+        found[piece] = face_of(outside->first);
     }
     for (std::size_t side = 0; side < 2 * mesh.faces.size(); ++side) {
         if (region_of(mesh, side) != kNoRegion) continue;
@@ -152,6 +204,7 @@ void label_sides(FoamMesh& mesh, const EdgeFaces& edges, const ElementNames& nam
         Face& face = mesh.faces[face_of(side)];
         (side % 2 == 0 ? face.back : face.front) = it->second;
     }
+    if (!mesh.periodic()) require_outside(mesh, edges, pieces, found, names);
 }
 
 IdVector<RegionId, std::uint8_t> closed_in(const FoamMesh& mesh, const EdgeFaces& edges) {

@@ -19,7 +19,8 @@ inline constexpr RegionId kNoRegion{0xffffffffU};  ///< a side of a face whose r
 ///
 /// @param mesh  soundness is not needed, but every face must have three different vertices in range
 /// @throws InputError  sides that look at the same gas but name different regions, a region that is named on some of its
-///                     sides only, a film with the same gas on both sides (one that has one side only); faces are named
+///                     sides only, a film with the same gas on both sides (one that has one side only), unlabelled films
+///                     inside a closed region of others; faces are named
 void label_sides(FoamMesh& mesh, const EdgeFaces& edges, const ElementNames& names = {});
 
 /// Of each region, whether films close it in: what enters its surface along any edge leaves there. Never the outside.
