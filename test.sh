@@ -65,7 +65,7 @@ fuzz() {
     for target in "$folder"/bin/fuzz/*_fuzz; do
         [ -x "$target" ] || die "no fuzz target was built"
         name=$(basename "$target")
-        inputs=("$folder/corpus/$name" "$root/tests/fuzz/corpus/${name%_fuzz}")  # new ones go to the first
+        inputs=("$folder/corpus/$name" "$root/tests/fuzz/corpus/$name")  # new ones go to the first
         mkdir -p "${inputs[0]}"
         [ -d "${inputs[1]}" ] || unset 'inputs[1]'
         say "$name"

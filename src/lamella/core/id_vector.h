@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <ranges>
+#include <iterator>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -13,6 +13,44 @@ namespace lamella {
 template <class Id>
 requires std::is_enum_v<Id>
 constexpr std::size_t index(Id id) { return static_cast<std::size_t>(id); }
+
+/// The ids 0, 1, ... size - 1. (std::views::iota would do, but clang 14 cannot compile it with the library of gcc 12.)
+template <class Id>
+class IdRange {
+public:
+    class Iterator {
+    public:
+        using value_type = Id;
+        using difference_type = std::ptrdiff_t;
+        using reference = Id;
+        using pointer = const Id*;
+        using iterator_category = std::input_iterator_tag;
+
+        Iterator() = default;
+        explicit Iterator(std::size_t i) : i_(i) {}
+        Id operator*() const { return static_cast<Id>(i_); }
+        Iterator& operator++() {
+            ++i_;
+            return *this;
+        }
+        Iterator operator++(int) {
+            const Iterator before = *this;
+            ++i_;
+            return before;
+        }
+        friend bool operator==(const Iterator&, const Iterator&) = default;
+
+    private:
+        std::size_t i_ = 0;
+    };
+
+    explicit IdRange(std::size_t size) : size_(size) {}
+    Iterator begin() const { return Iterator(0); }
+    Iterator end() const { return Iterator(size_); }
+
+private:
+    std::size_t size_;
+};
 
 /// A column: one value per element of one kind, addressed by that kind's id only.
 template <class Id, class T>
@@ -41,10 +79,7 @@ public:
     void pop_back() { values_.pop_back(); }
 
     /// The ids of all elements, in order: `for (VertexId v : positions.ids())`.
-    auto ids() const {
-        return std::views::iota(std::size_t{0}, values_.size()) |
-               std::views::transform([](std::size_t i) { return static_cast<Id>(i); });
-    }
+    IdRange<Id> ids() const { return IdRange<Id>(values_.size()); }
 
     auto begin() { return values_.begin(); }
     auto end() { return values_.end(); }

@@ -10,9 +10,26 @@
 #include <iterator>
 #include <map>
 #include <ostream>
+#include <utility>
 #include <vector>
 
 namespace lamella::io {
+namespace {
+
+/// Vertices on wires as points of a group `wire`: programs that draw faces leave them out.
+void write_wire(std::ostream& stream, const sim::Surface& s) {
+    for (const sim::Field& field : s.vertex_fields) {
+        if (field.name != "on_wire" || field.values.size() != s.position.size()) continue;
+        bool first = true;
+        for (std::size_t v = 0; v < s.position.size(); ++v) {
+            if (field.values[v] == 0.0) continue;
+            if (std::exchange(first, false)) stream << "g wire\n";
+            stream << "p " << v + 1 << '\n';
+        }
+    }
+}
+
+}  // namespace
 
 void write_obj(std::ostream& stream, const sim::Frame& frame) {
     detail::check_frame(frame);
@@ -29,6 +46,7 @@ void write_obj(std::ostream& stream, const sim::Frame& frame) {
         for (const std::size_t f : faces)
             fmt::format_to(out, "f {} {} {}\n", s.triangles[f][0] + 1, s.triangles[f][1] + 1, s.triangles[f][2] + 1);
     }
+    write_wire(stream, s);
     detail::finish(stream);
 }
 

@@ -78,6 +78,8 @@ void write_surface_evolver(std::ostream& stream, const sim::Frame& frame) {
 
     auto out = std::ostream_iterator<char>(stream);
     fmt::format_to(out, "// Films of lamella, solver {}, time {}. Lengths in m, film tension 1.\n", frame.solver, frame.time);
+    // Extra attributes that the Evolver keeps and lamella reads back: open regions are no bodies.
+    fmt::format_to(out, "\ndefine facet attribute region_back integer\ndefine facet attribute region_front integer\n");
     fmt::format_to(out, "\nvertices\n");
     for (std::size_t v = 0; v < s.position.size(); ++v)
         fmt::format_to(out, "{} {:.17g} {:.17g} {:.17g}{}\n", v + 1, s.position[v][0], s.position[v][1], s.position[v][2],
@@ -94,7 +96,7 @@ void write_surface_evolver(std::ostream& stream, const sim::Frame& frame) {
             const std::uint32_t a = s.triangles[f][k], b = s.triangles[f][(k + 1) % 3];
             fmt::format_to(out, " {}{}", a < b ? "" : "-", edges.at(std::minmax(a, b)));
         }
-        fmt::format_to(out, "\n");
+        fmt::format_to(out, " region_back {} region_front {}\n", s.regions[f][0], s.regions[f][1]);
     }
     const std::set<std::int32_t> closed = closed_regions(s);
     if (!closed.empty()) fmt::format_to(out, "\nbodies\n");

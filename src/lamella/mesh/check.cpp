@@ -47,6 +47,11 @@ private:
         if (!full()) found_.push_back(fmt::format(text, std::forward<Args>(args)...));
     }
 
+    template <class Id>
+    std::string called(Id id) const {
+        return options_.names.of(id);
+    }
+
     void columns() {
         if (mesh_.on_wire.size() != mesh_.position.size())
             report("{} positions but {} wire marks", mesh_.position.size(), mesh_.on_wire.size());
@@ -60,31 +65,31 @@ private:
     void elements() {
         IdVector<VertexId, std::uint8_t> used(mesh_.position.size(), 0);
         for (const VertexId v : mesh_.position.ids())
-            if (!finite(mesh_.position[v])) report("vertex {} is not at a finite place", index(v));
+            if (!finite(mesh_.position[v])) report("vertex {} is not at a finite place", called(v));
         std::map<std::pair<std::array<VertexId, 3>, std::array<int, 6>>, FaceId> known;
         for (const FaceId f : mesh_.faces.ids()) {
             const Face& face = mesh_.faces[f];
             bool in_range = true;
             for (const VertexId v : face.vertices)
                 if (index(v) >= mesh_.position.size()) {
-                    report("face {} has vertex {} of {}", index(f), index(v), mesh_.position.size());
+                    report("face {} has vertex {} of {}", called(f), index(v), mesh_.position.size());
                     in_range = false;
                 }
             for (const RegionId r : {face.back, face.front})
                 if (index(r) >= mesh_.regions.size()) {
-                    report("face {} has region {} of {}", index(f), index(r), mesh_.regions.size());
+                    report("face {} has region {} of {}", called(f), index(r), mesh_.regions.size());
                     in_range = false;
                 } else if (mesh_.regions[r].kind == RegionKind::kGone) {
-                    report("face {} has region {}, which is gone", index(f), index(r));
+                    report("face {} has region {}, which is gone", called(f), index(r));
                 }
             if (!in_range) continue;
             for (const VertexId v : face.vertices) used[v] = 1;
             if (face.back == face.front && !mesh_.periodic())
-                report("face {} has region {} on both sides", index(f), index(face.back));
+                report("face {} has region {} on both sides", called(f), index(face.back));
             shape(f, known);
         }
         for (const VertexId v : used.ids())
-            if (used[v] == 0) report("vertex {} belongs to no face", index(v));
+            if (used[v] == 0) report("vertex {} belongs to no face", called(v));
     }
 
     void shape(FaceId f, std::map<std::pair<std::array<VertexId, 3>, std::array<int, 6>>, FaceId>& known) {
@@ -92,10 +97,10 @@ private:
         if (!finite(x[0]) || !finite(x[1]) || !finite(x[2])) return;
         const auto& v = mesh_.faces[f].vertices;
         if (!mesh_.periodic() && (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])) {
-            report("face {} has a vertex twice", index(f));
+            report("face {} has a vertex twice", called(f));
             return;
         }
-        if (norm(cross(x[1] - x[0], x[2] - x[0])) == 0.0) report("face {} has no area", index(f));
+        if (norm(cross(x[1] - x[0], x[2] - x[0])) == 0.0) report("face {} has no area", called(f));
         // The same vertices in the same images, whatever the order and whichever image comes first.
         std::array<std::size_t, 3> order{0, 1, 2};
         std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -107,7 +112,7 @@ private:
             for (std::size_t k = 0; k < 6; ++k)
                 images[k] = mesh_.images[f][order[1 + k / 3]][k % 3] - mesh_.images[f][order[0]][k % 3];
         const auto [it, fresh] = known.try_emplace({{v[order[0]], v[order[1]], v[order[2]]}, images}, f);
-        if (!fresh) report("faces {} and {} have the same vertices", index(it->second), index(f));
+        if (!fresh) report("faces {} and {} have the same vertices", called(it->second), called(f));
     }
 
     void edges() {
@@ -123,11 +128,11 @@ private:
             }
             for (const auto& [region, count] : sum)
                 if (count != 0) {
-                    report("edge {}-{} does not close region {}: a film ends there, but no wire holds it", index(a),
-                           index(b), index(region));
+                    report("edge {}-{} does not close region {}: a film ends there, but no wire holds it", called(a),
+                           called(b), index(region));
                     break;
                 }
-            if (edges.of(e).size() == 1) report("edge {}-{} has one face only", index(a), index(b));
+            if (edges.of(e).size() == 1) report("edge {}-{} has one face only", called(a), called(b));
         }
     }
 
@@ -204,7 +209,7 @@ private:
                                       : geometry::triangles_meet_beyond_shared(s, t, static_cast<int>(shared));
         if (!meet) return;
         const Vec3 middle = (at[0] + at[1] + at[2]) / 3.0;
-        report("faces {} and {} cut each other near ({:.6g}, {:.6g}, {:.6g})", index(f), index(g), middle[0], middle[1],
+        report("faces {} and {} cut each other near ({:.6g}, {:.6g}, {:.6g})", called(f), called(g), middle[0], middle[1],
                middle[2]);
     }
 
@@ -221,8 +226,8 @@ std::size_t intersecting_pairs(const FoamMesh& mesh, std::size_t most) {
     return Audit(mesh, {.longest_list = most}).count_intersections();
 }
 
-void require_sound(const FoamMesh& mesh, const std::string& name) {
-    const std::vector<std::string> found = faults(mesh);
+void require_sound(const FoamMesh& mesh, const std::string& name, const CheckOptions& options) {
+    const std::vector<std::string> found = faults(mesh, options);
     if (found.empty()) return;
     throw InputError(fmt::format("{}: {}{}", name, found[0],
                                  found.size() > 1 ? fmt::format(" (and {} faults more)", found.size() - 1) : ""));

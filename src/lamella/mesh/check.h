@@ -3,15 +3,26 @@
 #include "lamella/mesh/foam_mesh.h"
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace lamella::mesh {
 
+/// What vertices and faces are called in messages: where they are empty, by their number from 0.
+struct ElementNames {
+    std::function<std::string(VertexId)> vertex;
+    std::function<std::string(FaceId)> face;
+
+    std::string of(VertexId v) const { return vertex ? vertex(v) : std::to_string(index(v)); }
+    std::string of(FaceId f) const { return face ? face(f) : std::to_string(index(f)); }
+};
+
 /// What of a FoamMesh is examined.
 struct CheckOptions {
     bool intersections = true;       ///< exact test of every pair of faces whose boxes meet
     std::size_t longest_list = 20;   ///< stop after so many faults
+    ElementNames names;              ///< those of the file that the mesh came from
 };
 
 /// Everything that breaks a rule of FoamMesh, each a line that names the element: "face 12 has region 3 on both
@@ -29,6 +40,6 @@ std::vector<std::string> faults(const FoamMesh& mesh, const CheckOptions& option
 std::size_t intersecting_pairs(const FoamMesh& mesh, std::size_t most);
 
 /// @throws InputError  "NAME: FAULT" of the first fault, and how many more there are
-void require_sound(const FoamMesh& mesh, const std::string& name);
+void require_sound(const FoamMesh& mesh, const std::string& name, const CheckOptions& options = {});
 
 }  // namespace lamella::mesh

@@ -14,7 +14,7 @@ void neighbors(const FoamMesh& mesh, std::span<const Corner> corners, std::vecto
     for (const Corner& corner : corners)
         for (const VertexId v : mesh.faces[corner.face].vertices) row.push_back(v);
     std::ranges::sort(row);
-    row.erase(std::ranges::unique(row).begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
 }
 
 VertexMatrix zero_matrix(const FoamMesh& mesh) {

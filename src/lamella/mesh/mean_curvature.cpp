@@ -37,7 +37,7 @@ std::vector<RegionId> regions_around(const FoamMesh& mesh, std::span<const EdgeU
         regions.push_back(mesh.faces[use.face].front);
     }
     std::ranges::sort(regions);
-    regions.erase(std::ranges::unique(regions).begin(), regions.end());
+    regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
     return regions;
 }
 

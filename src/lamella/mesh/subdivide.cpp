@@ -8,12 +8,12 @@
 namespace lamella::mesh {
 namespace {
 
-/// The middle of the arc from a to b of the circle through c, a and b; nothing where the wire turns by more than 60
-/// degrees from one edge to the next: a corner.
+/// The middle of the arc from a to b of the circle through c, a and b; nothing where the wire turns by 60 degrees (a
+/// regular hexagon, whatever the rounding) or more from one edge to the next: a corner.
 std::optional<Vec3> arc_middle(const Vec3& c, const Vec3& a, const Vec3& b) {
     const Vec3 chord = b - a;
     const Vec3 before = a - c;
-    if (dot(chord, before) < 0.5 * norm(chord) * norm(before)) return std::nullopt;
+    if (dot(chord, before) < 0.501 * norm(chord) * norm(before)) return std::nullopt;
     // With the center m + s d, d the unit vector in the plane perpendicular to the chord, away from c.
     const Vec3 middle = 0.5 * (a + b);
     const double length = norm(chord);

@@ -18,8 +18,8 @@ VertexRegions vertex_regions(const FoamMesh& mesh, WhichRegions which) {
             for (const RegionId r : {mesh.faces[corner.face].back, mesh.faces[corner.face].front})
                 if (which == WhichRegions::kAll || mesh.regions[r].kind == RegionKind::kClosed) row.push_back(r);
         std::ranges::sort(row);
-        const auto repeated = std::ranges::unique(row);
-        regions.region.insert(regions.region.end(), row.begin(), repeated.begin());
+        const auto repeated = std::unique(row.begin(), row.end());
+        regions.region.insert(regions.region.end(), row.begin(), repeated);
         regions.start.push_back(regions.region.size());
     }
     return regions;

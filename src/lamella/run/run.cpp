@@ -2,9 +2,14 @@
 
 #include "lamella/core/error.h"
 #include "lamella/io/atomic_file.h"
+#include "lamella/io/mesh_files.h"
 #include "lamella/run/detail/loop.h"
 
 #include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace lamella::run {
 namespace {
@@ -43,11 +48,17 @@ RunResult run_scene(const scene::Scene& scene,
                     const RunSettings& settings) {
     // What can be wrong with the input is found before anything is written.
     auto solver = scene::create_solver(scene, registry);
-    const std::string resolved = scene::resolved_toml(scene, registry);
+    const std::string resolved = scene::resolved_toml(scene, registry, scene::FileNames::kCopies);
+    // A run keeps copies of the films it starts from, so that it can be resumed and repeated wherever it is. They are read
+    // before the folder is cleared: they may be in it.
+    std::vector<std::pair<std::string, std::string>> copies;
+    for (const scene::InputFile& file : scene::film_files(scene))
+        copies.emplace_back(file.name, io::film_file_contents(file.path));
     const Schedule schedule(scene.time, settings.until);
 
     RunFolder folder = RunFolder::create(path, settings.existing);
     try {
+        for (const auto& [name, contents] : copies) io::write_file_atomically(folder.path() / name, contents);
         io::write_file_atomically(folder.scene(), resolved);
     } catch (...) {
         folder.discard_if_empty();

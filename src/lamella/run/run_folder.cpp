@@ -1,6 +1,7 @@
 #include "lamella/run/run_folder.h"
 
 #include "lamella/core/error.h"
+#include "lamella/io/mesh_files.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -37,6 +38,11 @@ std::int64_t frame_index(const fs::path& file) {
     std::int64_t index = -1;
     const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), index);
     return error == std::errc{} && end == stem.data() + stem.size() ? index : -1;
+}
+
+/// "film_1.fe": what a run copies of its scene's films.
+bool is_film_copy(const fs::path& path) {
+    return path.stem().string().starts_with("film_") && io::is_film_file(path);
 }
 
 /// Turns what std::filesystem throws into the error that ends with exit code 4.
@@ -107,6 +113,10 @@ void RunFolder::clear() const {
     for (const fs::path& file :
          {scene(), provenance(), series(), events(), checkpoint(), previous_checkpoint(), log(), frame_collection()})
         fs::remove(file);
+    std::vector<fs::path> films;
+    for (const auto& entry : fs::directory_iterator(path_))
+        if (is_film_copy(entry.path())) films.push_back(entry.path());
+    for (const fs::path& film : films) fs::remove(film);
     remove_frames_from(0);
     if (!fs::is_directory(plots())) return;
     std::vector<fs::path> pictures;

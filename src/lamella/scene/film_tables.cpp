@@ -9,6 +9,7 @@
 #include "lamella/mesh/shapes/power_cluster.h"
 #include "lamella/mesh/shapes/sphere.h"
 #include "lamella/mesh/shapes/standard_clusters.h"
+#include "lamella/scene/detail/film_from_file.h"
 #include "lamella/scene/detail/toml_writer.h"
 #include "lamella/sim/read_options.h"
 
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace lamella::scene {
 namespace {
@@ -132,6 +134,8 @@ FoamMesh film_of(const FilmTable& film, double h) {
             return mesh::periodic_foam(mesh::PeriodicFoam::kKelvin, film.volume, h);
         case FilmShape::kWeairePhelan:
             return mesh::periodic_foam(mesh::PeriodicFoam::kWeairePhelan, film.volume, h);
+        case FilmShape::kMesh:
+            break;  // read before the edge length is known: films_of_files
     }
     return {};
 }
@@ -154,11 +158,31 @@ double film_size(const FilmTable& film) {
     }
 }
 
-double default_edge_length(const FilmTables& tables, const std::vector<mesh::Ball>& balls) {
+/// What the files of [[film]] hold; empty for films of known shapes.
+std::vector<io::FilmFile> films_of_files(const FilmTables& tables, const sim::Node& root) {
+    std::vector<io::FilmFile> files(tables.films.size());
+    const std::filesystem::path folder = std::filesystem::path(root.where.file).parent_path();
+    for (std::size_t k = 0; k < files.size(); ++k) {
+        const FilmTable& film = tables.films[k];
+        const bool mesh = film.shape == FilmShape::kMesh;
+        if (mesh == film.file.empty())
+            throw InputError(place(root, "film", k), mesh ? "film: shape = \"mesh\" needs file = \"...\""
+                                                          : "film.file goes with shape = \"mesh\" only");
+        if (mesh)
+            files[k] = at_table(place(root, "film", k), "film",
+                                [&] { return detail::scaled_films(folder / film.file, film.scale, film.center); });
+    }
+    return files;
+}
+
+double default_edge_length(const FilmTables& tables, const std::vector<mesh::Ball>& balls,
+                           const std::vector<io::FilmFile>& files) {
     double edge = 0.0;
     const auto at_most = [&](double length) { edge = edge == 0.0 ? length : std::min(edge, length); };
     for (const mesh::Ball& ball : balls) at_most(0.25 * ball.radius);
-    for (const FilmTable& film : tables.films) at_most(0.05 * film_size(film));
+    for (std::size_t k = 0; k < files.size(); ++k)
+        at_most(tables.films[k].shape == FilmShape::kMesh ? detail::edge_length_for(files[k].mesh)
+                                                          : 0.05 * film_size(tables.films[k]));
     return edge;
 }
 
@@ -258,6 +282,15 @@ IdVector<mesh::RegionId, Vec3> start_velocities(const FilmTables& tables, const 
     return velocity;
 }
 
+/// Those of films that are about to be added: their regions will follow those that are there.
+void add_tensions(film::Problem& problem, const std::vector<io::PairTension>& tensions) {
+    const std::size_t before = problem.mesh.regions.size() - 1;
+    const auto moved = [&](mesh::RegionId r) {
+        return r == mesh::kOutside ? r : static_cast<mesh::RegionId>(index(r) + before);
+    };
+    for (const io::PairTension& t : tensions) problem.tensions.push_back({moved(t.a), moved(t.b), t.factor});
+}
+
 template <class Table>
 FilmTableInfo info_of(std::string name, std::string summary, bool list) {
     return {std::move(name), std::move(summary), list, sim::describe_options<Table>()};
@@ -312,8 +345,9 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
     problem.material = tables.material;
     std::vector<mesh::Ball> all = balls;
     all.insert(all.end(), cluster.begin(), cluster.end());
+    std::vector<io::FilmFile> files = films_of_files(tables, root);
     problem.edge_length = tables.resolution.edge_length > 0.0 ? tables.resolution.edge_length
-                                                              : default_edge_length(tables, all);
+                                                              : default_edge_length(tables, all, files);
     const double h = problem.edge_length;
     problem.mesh.regions.push_back({RegionKind::kOpen, 0.0});
     const auto add = [&](FoamMesh part) {
@@ -322,7 +356,12 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
     };
     if (!balls.empty()) at_table(place(root, "bubble", 0), "bubble", [&] { add(bubbles_of(balls, h)); });
     for (std::size_t k = 0; k < tables.films.size(); ++k)
-        at_table(place(root, "film", k), "film", [&] { add(film_of(tables.films[k], h)); });
+        at_table(place(root, "film", k), "film", [&] {
+            if (tables.films[k].shape != FilmShape::kMesh) return add(film_of(tables.films[k], h));
+            detail::refine_films(files[k].mesh, h);
+            add_tensions(problem, files[k].tensions);
+            add(std::move(files[k].mesh));
+        });
     if (!cluster.empty()) at_table(place(root, "foam", 0), "foam", [&] { add(bubbles_of(cluster, h)); });
     problem.wire_of.assign(problem.mesh.position.size(), -1);
     for (std::size_t k = 0; k < tables.wires.size(); ++k) attach(problem, tables.wires[k], place(root, "wire", k));

@@ -54,7 +54,7 @@ struct BubbleTable {
 
 enum class FilmShape {
     kDisk, kRectangle, kHemisphere, kCylinder, kCatenoid, kFrame, kDoubleBubble, kTripleBubble, kQuadrupleBubble,
-    kCube, kKelvin, kWeairePhelan
+    kCube, kKelvin, kWeairePhelan, kMesh
 };
 
 /// One [[film]]
@@ -71,6 +71,8 @@ struct FilmTable {
     double edge = 0.1;
     double volume = 1e-4;
     double second_volume = 0.0;
+    std::string file;
+    double scale = 1.0;
 
     template <class Visitor>
     void visit(Visitor&& option) {
@@ -86,10 +88,11 @@ struct FilmTable {
                                         {"quadruple_bubble", FilmShape::kQuadrupleBubble},
                                         {"cube", FilmShape::kCube},
                                         {"kelvin", FilmShape::kKelvin},
-                                        {"weaire_phelan", FilmShape::kWeairePhelan}}),
+                                        {"weaire_phelan", FilmShape::kWeairePhelan},
+                                        {"mesh", FilmShape::kMesh}}),
                {"what it is; frame: films from the edges of a wire frame to its center; cube: a bubble with"
                 " flat sides; kelvin and weaire_phelan:"
-                " foams that fill space"});
+                " foams that fill space; mesh: films from a file"});
         option("center", center, sim::any_number(), {"of the film; of a rectangle, its first corner", "length"});
         option("axis", axis, sim::any_number(), {"normal of a disk, axis of the round shapes"});
         option("radius", radius, sim::more_than(0.0), {"of the ring or rings", "length"});
@@ -109,6 +112,9 @@ struct FilmTable {
         option("volume", volume, sim::more_than(0.0), {"of each bubble; of a double_bubble, its first", "length^3"});
         option("second_volume", second_volume, sim::at_least(0.0),
                {"of the second bubble of a double_bubble; 0: equal", "length^3"});
+        option("file", file,
+               {"of a mesh: a Surface Evolver datafile (.fe), OBJ or PLY; counts from the scene's folder", "path"});
+        option("scale", scale, sim::more_than(0.0), {"of a mesh: meters per unit of length of the file"});
     }
 };
 

@@ -20,4 +20,9 @@ std::string import_foam_json(const std::filesystem::path& path);
 /// The same from text; `name` stands for the file in messages.
 std::string import_foam_json_text(std::string_view text, const std::string& name);
 
+/// A scene for the solver equilibrium that starts from the films of a Surface Evolver datafile, OBJ or PLY.
+/// @param folder  where the scene will be: it names the file as seen from there; empty: by its absolute name
+/// @throws InputError  the file is no mesh of films (line or element and what is wrong)   @throws IoError
+std::string import_films(const std::filesystem::path& path, const std::filesystem::path& folder);
+
 }  // namespace lamella::scene

@@ -130,6 +130,23 @@ std::string directory_of(const Scene& scene) {
     return directory.empty() ? "." : directory;
 }
 
+std::filesystem::path absolute_path(const Scene& scene, const std::filesystem::path& file) {
+    return std::filesystem::absolute(std::filesystem::path(directory_of(scene)) / file).lexically_normal();
+}
+
+/// The film tables, the names of their files as they are to be written.
+FilmTables resolved_films(const Scene& scene, FileNames file_names) {
+    FilmTables tables = read_film_tables(scene.root);
+    const std::vector<InputFile> files = film_files(scene);
+    std::size_t next = 0;
+    for (FilmTable& film : tables.films)
+        if (film.shape == FilmShape::kMesh) {
+            const InputFile& input = files[next++];
+            film.file = file_names == FileNames::kCopies ? input.name : input.path.string();
+        }
+    return tables;
+}
+
 /// The options of the scene's solver with every default filled in. Names of files count from the scene's folder; the
 /// resolved scene will stand elsewhere, so they become absolute.
 sim::Node resolved_options(const Scene& scene, const sim::SolverEntry& solver) {
@@ -144,9 +161,7 @@ sim::Node resolved_options(const Scene& scene, const sim::SolverEntry& solver) {
         }
         auto* text = node != nullptr ? std::get_if<std::string>(&node->value) : nullptr;
         if (text != nullptr && !text->empty())
-            *text = std::filesystem::absolute(std::filesystem::path(directory_of(scene)) / *text)
-                        .lexically_normal()
-                        .string();
+            *text = absolute_path(scene, *text).string();
     }
     return options;
 }
@@ -210,13 +225,25 @@ Scene parse_scene(std::string_view text,
     return scene;
 }
 
-std::string resolved_toml(const Scene& scene, const sim::SolverRegistry& registry) {
+std::vector<InputFile> film_files(const Scene& scene) {
+    std::vector<InputFile> files;
+    if (!scene.films) return files;
+    const FilmTables tables = read_film_tables(scene.root);
+    for (std::size_t k = 0; k < tables.films.size(); ++k) {
+        const std::filesystem::path file = tables.films[k].file;
+        if (tables.films[k].shape == FilmShape::kMesh)
+            files.push_back({absolute_path(scene, file), fmt::format("film_{}{}", k + 1, file.extension().string())});
+    }
+    return files;
+}
+
+std::string resolved_toml(const Scene& scene, const sim::SolverRegistry& registry, FileNames file_names) {
     const sim::SolverEntry& solver = chosen_solver(scene, registry);
     const HeaderOptions header{scene.title, scene.solver, static_cast<std::int64_t>(scene.seed)};
     return resolved_table("", header) + "\n" +              //
            resolved_table("time", scene.time) + "\n" +      //
            resolved_table("output", scene.output) + "\n" +  //
-           (solver.films ? film_tables_toml(read_film_tables(scene.root), scene.films->edge_length) : "") +
+           (solver.films ? film_tables_toml(resolved_films(scene, file_names), scene.films->edge_length) : "") +
            detail::toml_text(solver.name, resolved_options(scene, solver), comments_from(solver.describe()));
 }
 

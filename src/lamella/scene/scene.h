@@ -75,8 +75,21 @@ Scene parse_scene(std::string_view text,
                   const std::vector<std::string>& overrides,
                   const sim::SolverRegistry& registry);
 
-/// The scene with every default filled in, as TOML: running it again gives the same bits.
-std::string resolved_toml(const Scene& scene, const sim::SolverRegistry& registry);
+/// A file of films that a scene starts from.
+struct InputFile {
+    std::filesystem::path path;  ///< absolute
+    std::string name;            ///< of its copy in a run folder: "film_1.fe" for the first [[film]]
+};
+std::vector<InputFile> film_files(const Scene& scene);
+
+/// How a resolved scene names the files of films: where they are, or as copies beside it (film_files).
+enum class FileNames { kAbsolute, kCopies };
+
+/// The scene with every default filled in, as TOML: running it again gives the same bits. Of other files the absolute name
+/// is given.
+std::string resolved_toml(const Scene& scene,
+                          const sim::SolverRegistry& registry,
+                          FileNames file_names = FileNames::kAbsolute);
 
 /// The solver of a scene, its options checked, not started.
 std::unique_ptr<sim::Solver> create_solver(const Scene& scene, const sim::SolverRegistry& registry);

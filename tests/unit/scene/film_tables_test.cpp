@@ -91,6 +91,49 @@ TEST(FilmTables, ComplaintsNameThePlace) {
     says("[[film]]\nshape = \"kelvin\"\nvolume = 1.0\n[[bubble]]\nradius = 1.0\n", "periodic");
 }
 
+std::string films(const std::string& name) { return std::string(LAMELLA_SOURCE_DIR) + "/tests/data/films/" + name; }
+
+TEST(FilmTables, FilmsOfAFileAreScaledMovedAndRefined) {
+    const Scene scene = parse("[[film]]\nshape = \"mesh\"\nfile = \"" + films("box.fe") +
+                              "\"\nscale = 0.01\ncenter = [1.0, 0, 0]\n[resolution]\nedge_length = \"5 mm\"\n");
+    const mesh::FoamMesh& mesh = scene.films->mesh;
+    ASSERT_EQ(mesh.regions.size(), 8U);
+    EXPECT_DOUBLE_EQ(mesh.regions[mesh::RegionId{7}].target_volume, 8e-6);
+    EXPECT_NEAR(mesh::region_volumes(mesh)[mesh::RegionId{7}], 6e-6 * std::sqrt(2.0), 1e-18);
+    EXPECT_EQ(mesh.faces.size(), 24U * 16U);
+    for (const Vec3& x : mesh.position) {
+        EXPECT_GE(x[0], 1.0);
+        EXPECT_LE(x[0], 1.02 + 1e-12);
+    }
+    EXPECT_EQ(scene.films->edge_length, 0.005);
+}
+
+TEST(FilmTables, FilmsOfAFileAreFoundAgainFromElsewhere) {
+    const auto registry = all_solvers();
+    const std::string text = "solver = \"equilibrium\"\n[[film]]\nshape = \"mesh\"\nfile = \"kelvin.fe\"\n";
+    const Scene scene = parse_scene(text, films("s.toml"), {}, registry);
+    const Scene again = parse_scene(resolved_toml(scene, registry), "/else/resolved.toml", {}, registry);
+    EXPECT_EQ(again.films->mesh, scene.films->mesh);
+    EXPECT_TRUE(again.films->mesh.periodic());
+    ASSERT_EQ(film_files(again).size(), 1U);
+    EXPECT_EQ(film_files(again)[0].name, "film_1.fe");
+    EXPECT_EQ(film_files(again)[0].path, films("kelvin.fe"));
+    EXPECT_NE(resolved_toml(scene, registry, FileNames::kCopies).find("file = \"film_1.fe\""), std::string::npos);
+}
+
+TEST(FilmTables, FilesThatAreWrongAreNamedWithTheirTable) {
+    const auto says = [](const std::string& text, const std::string& what) {
+        EXPECT_NE(complaint(text).find(what), std::string::npos) << complaint(text) << " | " << what;
+    };
+    says("[[film]]\nshape = \"mesh\"\n", "s.toml:2: film: shape = \"mesh\" needs file");
+    says("[[film]]\nfile = \"a.fe\"\n", "film.file goes with shape = \"mesh\" only");
+    says("[[film]]\nshape = \"mesh\"\nfile = \"a.stl\"\n", "a.stl: is no file of films");
+    says("[[film]]\nshape = \"mesh\"\nfile = \"" + films("../malformed_meshes/bad_index.fe") + "\"\n",
+         "bad_index.fe:10: edge 3: there is no vertex 9");
+    says("[[film]]\nshape = \"mesh\"\nfile = \"" + films("box.fe") + "\"\n[resolution]\nedge_length = 1e-5\n", "2e7 faces");
+    EXPECT_THROW(parse("[[film]]\nshape = \"mesh\"\nfile = \"none.fe\"\n"), IoError);
+}
+
 TEST(FilmTables, AreNoPartOfASceneForBubbles) {
     EXPECT_THROW(parse_scene("solver = \"bubble\"\n[foam]\ncount = 3\n", "s.toml", {}, all_solvers()), InputError);
     EXPECT_THROW(parse_scene("solver = \"bubble\"\n[[bubble]]\nradius = 3.0\n", "s.toml", {}, all_solvers()), InputError);
