@@ -44,8 +44,23 @@ void VortexSheetSolver::start(const sim::StartContext&) {
     take(input_.films->mesh);
     phi_.assign(topology_.size(), 0.0);
     velocity_.assign(mesh().position.size(), {});
+    settle_volumes();
     give_start_velocities();
     apply_events();
+}
+
+/// Clusters of balls begin as cells of up to twice the volume that their gas has, with uneven triangles. They are shrunk
+/// before the air is there: in the course of the run it would be stirred up by that.
+void VortexSheetSolver::settle_volumes() {
+    constexpr double kSettled = 1e-6;  // relative
+    constexpr int kMostRounds = 200;
+    for (int round = 0; round < kMostRounds; ++round) {
+        const mesh::VolumeProjection projection = mesh::volume_projection(mesh());
+        if (projection.error < kSettled) break;
+        mesh::staged_move(*tracker_, projection.displacement);
+        edit_mesh([&] { tracker_->remesh(); });
+    }
+    events_.clear();
 }
 
 void VortexSheetSolver::take(FoamMesh mesh) {

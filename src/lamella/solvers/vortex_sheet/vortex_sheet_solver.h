@@ -42,6 +42,7 @@ public:
 
 private:
     void take(mesh::FoamMesh mesh);
+    void settle_volumes();
     void give_start_velocities();
     void keep_volumes_of(IdVector<mesh::VertexId, Vec3>& motion) const;
     // The stages of a step, in order.
