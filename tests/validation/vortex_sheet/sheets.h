@@ -2,12 +2,18 @@
 
 // Films for the tests of vortex sheets, in units with surface tension, density and radius 1.
 
+#include "lamella/mesh/check.h"
 #include "lamella/mesh/shapes/sphere.h"
 #include "lamella/mesh/volume.h"
+#include "lamella/scene/scene.h"
 #include "lamella/solvers/vortex_sheet/vortex_sheet_solver.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 
 namespace lamella::vortex_sheet {
@@ -61,6 +67,48 @@ inline double mode(const mesh::FoamMesh& mesh, int l) {
         angle += solid;
     }
     return (2 * l + 1) * sum / angle;
+}
+
+/// A solver of a scene in the units of the tests.
+inline std::unique_ptr<VortexSheetSolver> solver_of(const std::string& tables) {
+    const auto registry = scene::all_solvers();
+    const auto scene = scene::parse_scene(
+        "solver = \"vortex_sheet\"\n" + tables + "\n[material]\nsurface_tension = 1.0\nair_density = 1.0\n", "test.toml", {},
+        registry);
+    auto solver = scene::create_solver(scene, registry);
+    return std::unique_ptr<VortexSheetSolver>(dynamic_cast<VortexSheetSolver*>(solver.release()));
+}
+
+/// What is watched while a run goes on.
+struct Course {
+    double volume_error = 0.0;  ///< largest, of any bubble
+    double largest_energy = 0.0, least_energy = 1e300, largest_kinetic = 0.0;
+    double impulse = 0.0;  ///< largest
+    std::int64_t steps = 0;
+
+    double energy_spread() const { return largest_energy - least_energy; }
+    void look(const VortexSheetSolver& solver) {
+        volume_error = std::max(volume_error, scalar(solver, "volume_error"));
+        const double energy = scalar(solver, "energy");
+        largest_energy = std::max(largest_energy, energy);
+        least_energy = std::min(least_energy, energy);
+        largest_kinetic = std::max(largest_kinetic, scalar(solver, "energy_kinetic"));
+        impulse = std::max(impulse, norm(Vec3{{scalar(solver, "impulse_x"), scalar(solver, "impulse_y"),
+                                               scalar(solver, "impulse_z")}}));
+    }
+};
+
+/// Runs to `end`, looking every few steps; the mesh must be sound at the end.
+inline Course run(VortexSheetSolver& solver, double end, std::int64_t look_every = 10) {
+    Course course;
+    course.look(solver);
+    while (solver.time() < end) {
+        solver.advance(end);
+        if (++course.steps % look_every == 0) course.look(solver);
+    }
+    course.look(solver);
+    EXPECT_EQ(mesh::faults(solver.mesh()), std::vector<std::string>{});
+    return course;
 }
 
 }  // namespace lamella::vortex_sheet

@@ -53,8 +53,23 @@ void VortexSheetSolver::start(const sim::StartContext&) {
     take(input_.films->mesh);
     phi_.assign(topology_.size(), 0.0);
     velocity_.assign(mesh().position.size(), {});
+    settle_volumes();
     give_start_velocities();
     apply_events();
+}
+
+/// Clusters of balls begin as cells of up to twice the volume that their gas has, with uneven triangles. They are shrunk
+/// before the air is there: in the course of the run it would be stirred up by that.
+void VortexSheetSolver::settle_volumes() {
+    constexpr double kSettled = 1e-6;  // relative
+    constexpr int kMostRounds = 200;
+    for (int round = 0; round < kMostRounds; ++round) {
+        const mesh::VolumeProjection projection = mesh::volume_projection(mesh());
+        if (projection.error < kSettled) break;
+        mesh::staged_move(*tracker_, projection.displacement);
+        edit_mesh([&] { tracker_->remesh(); });
+    }
+    events_.clear();
 }
 
 void VortexSheetSolver::take(FoamMesh mesh) {
@@ -72,30 +87,54 @@ void VortexSheetSolver::set_circulation(Circulation phi) {
 }
 
 /// Bubbles that the scene sends off move as a whole at first: the flux through each vertex is that of its bubbles' mean
-/// velocity.
+/// velocity. Clusters without such a bubble start without circulation and are carried along.
 void VortexSheetSolver::give_start_velocities() {
     const auto& velocity = input_.films->velocity;
-    if (std::none_of(velocity.begin(), velocity.end(), [](const Vec3& v) { return squared_norm(v) > 0.0; })) return;
-    const SheetGeometry geometry = sheet_geometry(mesh(), topology_);
-    FluxTarget target;
+    const auto moving = [](const Vec3& v) { return squared_norm(v) > 0.0; };
+    if (std::none_of(velocity.begin(), velocity.end(), moving)) return;
+    std::vector<std::uint8_t> sent(topology_.clusters, 0);
+    for (const VertexId v : mesh().position.ids())
+        for (const RegionId r : topology_.entries.of(v))
+            if (mesh().regions[r].kind == RegionKind::kClosed && moving(velocity[r])) sent[topology_.cluster[v]] = 1;
+    IdVector<VertexId, Vec3> motion(mesh().position.size());
     for (const VertexId v : mesh().position.ids()) {
-        Vec3 mean;
         double bubbles = 0.0;
         for (const RegionId r : topology_.entries.of(v))
             if (mesh().regions[r].kind == RegionKind::kClosed) {
-                mean += velocity[r];
+                motion[v] += velocity[r];
                 bubbles += 1.0;
             }
-        for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i) {
-            target.entry.push_back(static_cast<std::uint32_t>(i));
-            target.flux.push_back(bubbles > 0.0 ? dot(geometry.outward[i], mean) / bubbles : 0.0);
-        }
+        if (bubbles > 0.0) motion[v] = motion[v] / bubbles;
     }
+    keep_volumes_of(motion);
+    const SheetGeometry geometry = sheet_geometry(mesh(), topology_);
+    FluxTarget target;
+    for (const VertexId v : mesh().position.ids())
+        for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i) {
+            if (sent[topology_.cluster[v]] == 0 || topology_.hold[v] == Hold::kRim) continue;
+            target.entry.push_back(static_cast<std::uint32_t>(i));
+            target.flux.push_back(dot(geometry.outward[i], motion[v]));
+        }
     constexpr double kTolerance = 1e-3;  // what is left are ripples of the length of an edge
     meet_fluxes(mesh(), topology_, geometry, target, std::vector<double>(topology_.size(), 0.0), kTolerance,
                 sum_options(), phi_);
     fix_gauge(topology_, phi_);
     impulse_ = impulse(mesh(), topology_, geometry, phi_);
+}
+
+/// The smallest change of a motion after which it leaves all volumes as they are. No flow of air has another, and
+/// circulations that are to make one have no bounds.
+void VortexSheetSolver::keep_volumes_of(IdVector<VertexId, Vec3>& motion) const {
+    double fastest = 0.0;
+    for (const Vec3& u : motion) fastest = std::max(fastest, norm(u));
+    const double moment = 1e-5 * input_.films->edge_length / fastest;  // a linear problem, by a small motion
+    FoamMesh moved = mesh();
+    const IdVector<RegionId, double> volume = mesh::region_volumes(moved);
+    for (const RegionId r : moved.regions.ids())
+        if (moved.regions[r].kind == RegionKind::kClosed) moved.regions[r].target_volume = volume[r];
+    for (const VertexId v : motion.ids()) moved.position[v] += moment * motion[v];
+    const mesh::VolumeProjection back = mesh::volume_projection(moved);
+    for (const VertexId v : motion.ids()) motion[v] += back.displacement[v] / moment;
 }
 
 sim::StepReport VortexSheetSolver::advance(double time_limit) {

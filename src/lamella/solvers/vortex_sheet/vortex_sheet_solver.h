@@ -14,7 +14,7 @@
 namespace lamella::vortex_sheet {
 
 /// Films and foams in air: each film is a vortex sheet whose circulation surface tension drives, and whose induced
-/// velocity moves all films [Da15], in the form of docs/theory/vortex-sheet.md.
+/// velocity moves all films [Da15], in the form of docs/vortex_sheet.md.
 class VortexSheetSolver final : public sim::Solver {
 public:
     /// @throws InputError  options or films that do not go together
@@ -42,7 +42,9 @@ public:
 
 private:
     void take(mesh::FoamMesh mesh);
+    void settle_volumes();
     void give_start_velocities();
+    void keep_volumes_of(IdVector<mesh::VertexId, Vec3>& motion) const;
     // The stages of a step, in order.
     double choose_step(double time_limit) const;
     void kick(double dt);

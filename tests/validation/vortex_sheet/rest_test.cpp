@@ -1,0 +1,107 @@
+// Films that swing with damping come to rest where they should: at the exact areas, with Plateau's angles.
+
+#include "sheets.h"
+
+#include "lamella/mesh/shapes/standard_clusters.h"
+#include "lamella/mesh/shapes/wire_films.h"
+
+#include <cstdio>
+
+namespace lamella::vortex_sheet {
+namespace {
+
+double area_error(const VortexSheetSolver& solver, double exact) { return scalar(solver, "polyhedral_area") / exact - 1.0; }
+double faces(const VortexSheetSolver& solver) { return scalar(solver, "faces"); }
+double volume(const VortexSheetSolver& solver) { return solver.mesh().regions[mesh::RegionId{1}].target_volume; }
+
+void report(const char* name, const VortexSheetSolver& solver, double error) {
+    std::printf("%-18s F %5.0f steps %5d  area %+.2e  films %.3f %.3f  lines %.3f %.3f  kinetic %.1e\n", name, faces(solver),
+                static_cast<int>(solver.step()), error, scalar(solver, "film_angle_mean_error"),
+                scalar(solver, "film_angle_max_error"), scalar(solver, "line_angle_mean_error"),
+                scalar(solver, "line_angle_max_error"), scalar(solver, "energy_kinetic"));
+}
+
+TEST(Rest, OfTwoBubblesThatTouchIsTheStandardDoubleBubble) {
+    const auto solver = solver_of(R"(
+[[bubble]]
+center = [-0.924, 0.0, 0.0]
+radius = 1.0
+[[bubble]]
+center = [0.924, 0.0, 0.0]
+radius = 1.0
+[resolution]
+edge_length = 0.2
+[time]
+end = 1.0
+[vortex_sheet]
+damping = 2.0)");
+    solver->start({});
+    const Course course = run(*solver, 10.0);
+    // 27/4 pi R^2 with 9/8 pi R^3 = V; the volumes are those of the start.
+    const double radius = std::cbrt(8.0 * volume(*solver) / (9.0 * 3.14159265358979323846));
+    const double exact = 6.75 * 3.14159265358979323846 * radius * radius;
+    const double error = area_error(*solver, exact);
+    report("double bubble", *solver, error);
+    EXPECT_LT(std::abs(error), 5.0 / faces(*solver) + 1e-3);
+    EXPECT_LT(scalar(*solver, "film_angle_mean_error"), 0.5);
+    EXPECT_LT(course.volume_error, 1e-6);
+}
+
+TEST(Rest, OfThreeAndFourBubblesHasPlateausAngles) {
+    for (const int bubbles : {3, 4}) {
+        const double edge = 0.15;
+        mesh::FoamMesh cluster = bubbles == 3 ? mesh::triple_bubble(1.0, edge) : mesh::quadruple_bubble(1.0, edge);
+        for (Vec3& x : cluster.position) x[0] *= 1.1, x[1] /= 1.1;
+        for (mesh::Region& r : cluster.regions)
+            if (r.kind == mesh::RegionKind::kClosed) r.target_volume = 1.0;
+        Options options;
+        options.damping = 3.0;
+        const auto solver = started(unit_problem(std::move(cluster), edge), options);
+        run(*solver, 6.0, 50);
+        // The Surface Evolver's areas of unit bubbles, as in the tests of solver equilibrium.
+        const double error = area_error(*solver, bubbles == 3 ? 13.1416 : 16.9649);
+        report(bubbles == 3 ? "triple bubble" : "quadruple bubble", *solver, error);
+        EXPECT_LT(std::abs(error), 5.0 / faces(*solver) + 1e-3);
+        EXPECT_LT(scalar(*solver, "film_angle_mean_error"), 0.5);
+        EXPECT_LT(scalar(*solver, "line_angle_mean_error"), 1.0);
+    }
+}
+
+TEST(Rest, BetweenTwoRingsIsTheCatenoid) {
+    struct Case {
+        double height, area;
+    };
+    for (const Case& c : {Case{0.8, 4.883793}, Case{1.2, 6.999643}}) {  // R = a cosh(h / 2a), R = 1
+        const double edge = 0.12;
+        Options options;
+        options.damping = 2.0;
+        const auto solver = started(unit_problem(mesh::cylinder({}, {{1, 0, 0}}, 1.0, c.height, edge), edge), options);
+        run(*solver, 8.0, 50);
+        const double error = area_error(*solver, c.area);
+        report("catenoid", *solver, error);
+        EXPECT_LT(std::abs(error), 0.003);
+    }
+}
+
+TEST(Rest, InAnOctahedralFrameIsTheFlatFilmsOfLeastArea) {
+    // Wires of length sqrt(2) a from a cone; 4 sqrt(2) a^2 is the area of the six kites and twelve triangles.
+    const auto solver = solver_of(R"(
+[[film]]
+shape = "frame"
+frame = "octahedron"
+edge = 1.4142135623730951
+[resolution]
+edge_length = 0.15
+[time]
+end = 1.0
+[vortex_sheet]
+damping = 3.0)");
+    solver->start({});
+    run(*solver, 8.0, 50);
+    const double error = area_error(*solver, 4.0 * std::sqrt(2.0));
+    report("octahedron", *solver, error);
+    EXPECT_LT(std::abs(error), 1e-3);
+}
+
+}  // namespace
+}  // namespace lamella::vortex_sheet
