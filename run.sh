@@ -10,7 +10,7 @@ usage: ./run.sh [SCENE] [--no-install] [--build-dir DIR] [-h]
 
 Builds lamella for this machine, runs a scene, plots the result and says where everything is.
 
-  SCENE            a scene file, or the name of a shipped scene (default: bubble/coarsening-2d-small)
+  SCENE            a scene file, or the name of a shipped scene (default: vortex_sheet/double-bubble-small)
   --no-install     do not install missing Debian packages
   --build-dir DIR  where to build (default: build/release)
 TEXT
@@ -37,7 +37,7 @@ while [ $# -gt 0 ]; do
     esac
     shift
 done
-scene=${scene:-bubble/coarsening-2d-small}
+scene=${scene:-vortex_sheet/double-bubble-small}
 
 # The run folder is named after the scene: bubble/coarsening-2d -> bubble-coarsening-2d, some/where/foam.toml -> foam.
 if [ -f "$scene" ]; then
