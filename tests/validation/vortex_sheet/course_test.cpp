@@ -1,45 +1,17 @@
 // What a run keeps, and that it goes on: volumes, energy, impulse, sound meshes through merging, bursting, pinching.
 
-#include "sheets.h"
+#include "course.h"
 
-#include "lamella/mesh/shapes/standard_clusters.h"
-#include "lamella/mesh/shapes/wire_films.h"
-
-#include <cstdio>
 #include <map>
 
 namespace lamella::vortex_sheet {
 namespace {
 
-void report(const char* name, const Course& c) {
-    std::printf("%-22s steps %5d  volume %.1e  energy %.5f to %.5f, spread/kinetic %.3f, /total %.1e  impulse %.1e\n", name,
-                static_cast<int>(c.steps), c.volume_error, c.least_energy, c.largest_energy,
-                c.energy_spread() / c.largest_kinetic, c.energy_spread() / c.largest_energy, c.impulse);
-}
-
-mesh::FoamMesh jittered(mesh::FoamMesh mesh, double edge, double share) {
-    for (const mesh::VertexId v : mesh.position.ids()) {
-        Vec3& x = mesh.position[v];
-        const auto i = static_cast<double>(index(v));
-        const Vec3 kick{{std::sin(12.9898 * i), std::sin(78.233 * i), std::sin(37.719 * i)}};
-        x += share * edge * (kick - dot(kick, x) / dot(x, x) * x);
-    }
-    return mesh;
-}
-void take_volumes_as_targets(mesh::FoamMesh& mesh) {
-    const auto volume = mesh::region_volumes(mesh);
-    for (const mesh::RegionId r : mesh.regions.ids())
-        if (mesh.regions[r].kind == mesh::RegionKind::kClosed) mesh.regions[r].target_volume = volume[r];
-}
-
 TEST(Course, OfAJitteredSphereKeepsItsEnergyOnFixedTriangles) {
     const double edge = 0.3;
-    mesh::FoamMesh sphere = jittered(mesh::spheres({{Vec3{}, 1.0}}, edge), edge, 0.2);
-    for (Vec3& x : sphere.position) x[0] *= 0.9;
-    take_volumes_as_targets(sphere);
     Options options;
     options.remeshing = false;
-    const auto solver = started(unit_problem(std::move(sphere), edge), options);
+    const auto solver = started(unit_problem(uneven_sphere(edge), edge), options);
     const Course course = run(*solver, 40.0);
     report("sphere, fixed", course);
     EXPECT_LT(course.energy_spread(), 0.05 * course.largest_kinetic);
@@ -49,10 +21,7 @@ TEST(Course, OfAJitteredSphereKeepsItsEnergyOnFixedTriangles) {
 
 TEST(Course, OfAJitteredSphereDoesNotBlowUpWithRemeshing) {
     const double edge = 0.3;
-    mesh::FoamMesh sphere = jittered(mesh::spheres({{Vec3{}, 1.0}}, edge), edge, 0.2);
-    for (Vec3& x : sphere.position) x[0] *= 0.9;
-    take_volumes_as_targets(sphere);
-    const auto solver = started(unit_problem(std::move(sphere), edge), {});
+    const auto solver = started(unit_problem(uneven_sphere(edge), edge), {});
     const Course course = run(*solver, 40.0);
     report("sphere, remeshed", course);
     EXPECT_LT(course.largest_energy, 1.01 * course.least_energy);
@@ -62,10 +31,7 @@ TEST(Course, OfAJitteredSphereDoesNotBlowUpWithRemeshing) {
 
 TEST(Course, OfAnUnevenDoubleBubbleDoesNotBlowUpWithRemeshing) {
     const double edge = 0.3;
-    mesh::FoamMesh bubbles = mesh::double_bubble(mesh::double_bubble_of_radii(1.0, 1.0), edge);
-    for (Vec3& x : bubbles.position) x[0] *= 1.05, x[1] += 0.05 * x[1] * x[0];
-    take_volumes_as_targets(bubbles);
-    const auto solver = started(unit_problem(std::move(bubbles), edge), {});
+    const auto solver = started(unit_problem(uneven_double_bubble(edge), edge), {});
     const Course course = run(*solver, 35.0);
     report("double bubble", course);
     EXPECT_LT(course.largest_energy, 1.01 * course.least_energy);
@@ -103,6 +69,7 @@ edge_length = 0.25
 [time]
 end = 1.0)");
     solver->start({});
+    const double at_start = scalar(*solver, "energy");
     const Course course = run(*solver, 4.0);
     report("two bubbles meet", course);
     bool merged = false;
@@ -111,7 +78,8 @@ end = 1.0)");
     EXPECT_EQ(scalar(*solver, "bubbles"), 2.0);
     EXPECT_EQ(solver->topology().clusters, 1U);
     EXPECT_LT(course.volume_error, 1e-6);
-    EXPECT_LT(course.largest_energy, 1.01 * (scalar(*started(unit_problem(mesh::spheres({{{{-1.15, 0, 0}}, 1.0}, {{{1.15, 0, 0}}, 1.0}}, 0.25), 0.25), {}), "energy") + 2 * 0.75 * 4.18879 * 0.36));
+    // 49.95 to 52.92 measured: the energy that the two films lose where they become one, and never more than at the start.
+    EXPECT_LT(course.largest_energy, 1.001 * at_start);
 }
 
 TEST(Course, OfAClusterThatIsPoppedEndsWithOneBubble) {

@@ -65,6 +65,39 @@ TEST(Rest, BetweenTwoRingsIsTheCatenoid) {
     }
 }
 
+TEST(Rest, BetweenRingsEndsWhereNoCatenoidIs) {
+    // No catenoid beyond h = 1.325487 R; its neck is 0.552434 R there. The rings are pulled so slowly that the film
+    // follows through catenoids until then.
+    const double edge = 0.12, height = 1.25, speed = 0.005;
+    film::Problem films = unit_problem(mesh::catenoid({}, {{1, 0, 0}}, 1.0, height, edge), edge);
+    films.wire_of.assign(films.mesh.position.size(), -1);
+    for (const double side : {-1.0, 1.0}) {
+        film::Wire ring;
+        ring.center = {{0.5 * side * height, 0, 0}};
+        ring.velocity = {{side * speed, 0, 0}};
+        ring.start = 1.0;
+        for (const mesh::VertexId v : films.mesh.position.ids())
+            if (films.mesh.on_wire[v] != 0 && films.mesh.position[v][0] * side > 0.0)
+                films.wire_of[v] = static_cast<std::int32_t>(films.wires.size());
+        films.wires.push_back(ring);
+    }
+    Options options;
+    options.damping = 1.2;
+    const auto solver = started(films, options);
+    const auto neck = [&] {
+        double least = 1.0;
+        for (const Vec3& x : solver->mesh().position) least = std::min(least, std::hypot(x[1], x[2]));
+        return least;
+    };
+    while (neck() > 0.552434 && solver->time() < 20.0) solver->advance(20.0);
+    const double apart = height + 2.0 * speed * (solver->time() - 1.0);
+    std::printf("catenoid collapses at h / R = %.4f\n", apart);
+    EXPECT_NEAR(apart / 1.325487, 1.0, 0.02);
+    const double from = solver->time();
+    while (neck() > 0.25 && solver->time() < from + 3.0) solver->advance(from + 3.0);
+    EXPECT_LE(neck(), 0.25);  // and goes on
+}
+
 TEST(Rest, InAnOctahedralFrameIsTheFlatFilmsOfLeastArea) {
     // Wires of length sqrt(2) a from a cone; 4 sqrt(2) a^2 is the area of the six kites and twelve triangles.
     const auto solver = solver_of(R"(
