@@ -58,11 +58,10 @@ ImplicitStep implicit_step(const ImplicitProblem& problem, const Circulation& ph
         y = x;
         for (std::size_t i = 0; i < x.size(); ++i) y[i] -= half * half * change[i];
     };
-    constexpr double kTolerance = 1e-3;  // 1e-5 takes half as many evaluations again and changes no frequency
     constexpr int kMostIterations = 60;
     const linalg::GmresSolution done =
-        linalg::gmres(apply, problem.precondition, right, middle, kTolerance, kMostIterations);
-    if (!(done.residual <= kTolerance))
+        linalg::gmres(apply, problem.precondition, right, middle, problem.tolerance, kMostIterations);
+    if (!(done.residual <= problem.tolerance))
         throw NumericalError(fmt::format("semi-implicit tension: no convergence in {} iterations for a step of {:.3g} s, "
                                          "residual {:.1e}; vortex_sheet.tension = \"explicit\" does without",
                                          done.iterations, dt, done.residual));

@@ -25,6 +25,7 @@ struct ImplicitProblem {
     std::function<VertexVelocity(const Circulation&, bool driven)> velocity;
     std::function<void(const Circulation&, Circulation&)> precondition;
     double edge_length;  ///< [m]
+    double tolerance;    ///< of the residual, relative
 };
 
 struct ImplicitStep {
@@ -39,9 +40,9 @@ struct ImplicitStep {
 ///
 ///   y* - theta dt (R + D[theta dt (u(y*) - u_expected)]) = y(t),   R = rate(middle), D its derivative by the positions,
 ///
-/// a difference of the whole discrete rate, junctions included. Solved by GMRES from y(t) to a residual of 1e-3; the
-/// velocities of its vectors add up to that of the answer, so that there is one flow evaluation more than iterations.
-/// theta = 1/2 is the implicit midpoint rule: second order, no wave decays.
+/// a difference of the whole discrete rate, junctions included. Solved by GMRES from y(t); the velocities of its vectors
+/// add up to that of the answer, so that there is one flow evaluation more than iterations. theta = 1/2 is the implicit
+/// midpoint rule: second order, no wave decays. What GMRES leaves acts like a push, so energy is kept to the tolerance.
 /// @throws NumericalError  no convergence
 ImplicitStep implicit_step(const ImplicitProblem& problem, const Circulation& phi, double theta, double dt);
 

@@ -131,7 +131,8 @@ ImplicitStep VortexSheetSolver::solve_implicitly(double dt) const {
                                       .velocity);
             },
         .precondition = [&](const Circulation& x, Circulation& y) { inverse.apply(x, y); },
-        .edge_length = films.edge_length};
+        .edge_length = films.edge_length,
+        .tolerance = options_.implicit_tolerance};
     return implicit_step(problem, phi_, options_.theta, dt);
 }
 
