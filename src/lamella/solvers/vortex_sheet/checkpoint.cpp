@@ -18,6 +18,7 @@ void VortexSheetSolver::save(sim::StateWriter& out) const {
     out.write_value("time", time_);
     out.write_value("steps", steps_);
     out.write_value("step", step_);
+    out.write_value("evaluations", static_cast<std::int64_t>(evaluations_));
     out.write("impulse", std::span<const double>(impulse_.v, 3));
     out.write_value("wire_residual", wire_residual_);
     out.write_value("next_event", static_cast<std::int64_t>(next_event_));
@@ -44,6 +45,7 @@ void VortexSheetSolver::load(sim::StateReader& in) {
     time_ = in.read_double("time");
     steps_ = in.read_integer("steps");
     step_ = in.read_double("step");
+    evaluations_ = in.read_integer("evaluations");
     in.read("impulse", 3, values);
     impulse_ = {{values[0], values[1], values[2]}};
     wire_residual_ = in.read_double("wire_residual");

@@ -90,6 +90,16 @@ void FilmLaplacian::multiply(const std::vector<double>& x, std::vector<double>& 
     });
 }
 
+double FilmLaplacian::largest_eigenvalue() const {  // Gershgorin's circles
+    double largest = 0.0;
+    for (std::size_t i = 0; i < cell_.size(); ++i) {
+        double sum = 0.0;
+        for (std::size_t k = start_[i]; k < start_[i + 1]; ++k) sum += std::abs(value_[k]);
+        if (held_[i] == 0 && cell_[i] > 0.0) largest = std::max(largest, 0.5 * sum / cell_[i]);
+    }
+    return largest;
+}
+
 void diffuse(const FilmLaplacian& laplacian, double viscosity, double dt, Circulation& phi) {
     // A regular film: Gamma = phi_b - phi_a has twice the stiffness of either, so half of K makes d Gamma/dt right.
     const double factor = 0.5 * viscosity * dt;

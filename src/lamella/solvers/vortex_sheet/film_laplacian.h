@@ -19,6 +19,10 @@ public:
     const std::vector<double>& diagonal() const { return diagonal_; }
     /// Film area per region at the vertex of an entry, the mean cell of [Fei19] [m^2].
     const std::vector<double>& cell() const { return cell_; }
+    /// Whether an entry lies on a rim, where circulations stay.
+    bool held(std::size_t entry) const { return held_[entry] != 0; }
+    /// An upper bound of the eigenvalues of K / (2 cell), which are wave numbers squared [1/m^2].
+    double largest_eigenvalue() const;
 
 private:
     std::vector<std::size_t> start_;

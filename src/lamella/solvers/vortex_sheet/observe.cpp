@@ -100,6 +100,7 @@ std::vector<sim::Scalar> VortexSheetSolver::scalars() const {
         {"wire_residual", "-", wire_residual_, "flux through pinned films that no circulation takes away, relative"},
         {"max_velocity", "m/s", fastest, "of the films"},
         {"time_step", "s", step_, "the last one"},
+        {"implicit_evaluations", "-", static_cast<double>(evaluations_), "of the flow in the last step; 0: it was explicit"},
         {"vertices", "-", static_cast<double>(mesh().position.size()), "of the films"},
         {"faces", "-", static_cast<double>(mesh().faces.size()), "triangles"},
         {"min_angle", "deg", kDegrees * mesh::min_angle(mesh()), "smallest angle of a triangle"},
@@ -108,11 +109,7 @@ std::vector<sim::Scalar> VortexSheetSolver::scalars() const {
 
 std::vector<sim::Scalar> VortexSheetSolver::characteristic_numbers() const {
     const film::Problem& films = *input_.films;
-    double largest = 0.0;
-    for (const mesh::Region& r : films.mesh.regions)
-        if (r.kind == RegionKind::kClosed) largest = std::max(largest, r.target_volume);
-    const double radius = std::cbrt(0.75 * largest / 3.14159265358979323846);
-    std::vector<sim::Scalar> numbers{
+    return {
         {"film_tension", "N/m", films.material.film_tension(), "twice the surface tension"},
         {"bubbles", "-", bubbles(films.mesh), "closed regions"},
         {"vertices", "-", static_cast<double>(films.mesh.position.size()), "at the start"},
@@ -120,16 +117,15 @@ std::vector<sim::Scalar> VortexSheetSolver::characteristic_numbers() const {
         {"edge_length", "m", films.edge_length, "wanted"},
         {"kernel_length", "m", options_.smoothing_length * films.edge_length, "over which the flow is smoothed"},
         {"capillary_step_limit", "s", capillary_limit(), "explicit steps must stay below"},
-        {"first_step", "s", options_.step_safety * capillary_limit(), "step_safety * that"},
+        {"explicit_step", "s", options_.step_safety * capillary_limit(), "step_safety * that"},
         {"velocity_factor", "-", options_.compat.velocity_factor, "1: physics; 2: the published program"},
+        {"slowest_period", "s", slowest_period(), "of a sphere as large as the largest bubble, or a disk of all films"},
+        {"implicit_step_limit", "s", implicit_limit(), "semi-implicit steps stay below: slowest_period / steps_per_period"},
+        {"implicit_break_even", "s", break_even(), "longer semi-implicit steps are cheaper than explicit ones"},
+        {"implicit_possible", "-", implicit_possible() ? 1.0 : 0.0,
+         "0: steps are explicit (a wire runs through a film, or the integrator or [vortex_sheet.compat] is the published)"},
+        {"implicit_at_start", "-", starts_implicitly() ? 1.0 : 0.0, "1: semi-implicit steps pay at the start, unless outputs lie closer together"},
     };
-    if (radius > 0.0) {
-        const double omega = std::sqrt(9.6 * films.material.surface_tension /
-                                       (films.material.air_density * radius * radius * radius));
-        numbers.push_back({"slowest_period", "s", 2.0 * 3.14159265358979323846 / omega,
-                           "of a sphere as large as the largest bubble, l = 2"});
-    }
-    return numbers;
 }
 
 }  // namespace lamella::vortex_sheet

@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace lamella::vortex_sheet {
@@ -45,6 +46,7 @@ VortexSheetSolver::VortexSheetSolver(const Options& options, const sim::SolverIn
     for (const film::Event& event : input_.films->events)
         if (event.kind == film::Event::Kind::kInflate && !options_.volume_projection)
             throw InputError("vortex_sheet.volume_projection = false: bubbles cannot be inflated without it");
+    if (options_.tension == Tension::kImplicit) check_implicit();
 }
 
 void VortexSheetSolver::start(const sim::StartContext&) {
@@ -138,34 +140,49 @@ void VortexSheetSolver::keep_volumes_of(IdVector<VertexId, Vec3>& motion) const 
 }
 
 sim::StepReport VortexSheetSolver::advance(double time_limit) {
-    const double dt = choose_step(time_limit);
+    std::optional<ImplicitStep> implicit = try_implicit(time_limit);
+    const double dt = implicit ? implicit->dt : choose_step(time_limit);
     const bool verlet = options_.integrator == Integrator::kVerlet;
-    kick(verlet ? 0.5 * dt : dt);
+    if (implicit) phi_ = std::move(implicit->phi);
+    else kick(verlet ? 0.5 * dt : dt);
     damp(dt);
-    velocity_ = velocity_at_midpoint(verlet ? dt : 0.0);
+    velocity_ = implicit ? std::move(implicit->velocity) : velocity_at_midpoint(verlet ? dt : 0.0);
     move(dt);
     time_ = dt >= time_limit - time_ ? time_limit : time_ + dt;
-    if (verlet) kick(0.5 * dt);
+    if (verlet && !implicit) kick(0.5 * dt);
     inflate();
     restore_volumes();
     if (options_.remeshing) remesh();
     keep_impulse();
     apply_events();
     step_ = dt;
+    evaluations_ = implicit ? implicit->evaluations : 0;
     ++steps_;
     observed_.reset();
+    if (implicit)
+        return {.step = dt, .evaluations = evaluations_, .iterations = evaluations_ - 1, .residual = implicit->residual};
     return {.step = dt, .evaluations = 1, .residual = wire_residual_};
 }
 
 double VortexSheetSolver::choose_step(double time_limit) const {
-    double dt = options_.step_safety * capillary_limit();
-    if (options_.largest_step > 0.0) dt = std::min(dt, options_.largest_step);
+    return fitted(std::min(options_.step_safety * capillary_limit(), farthest_step()), time_limit);
+}
+
+/// The step that the speed of films and wires allows, and the user.
+double VortexSheetSolver::farthest_step() const {
+    double dt = options_.largest_step > 0.0 ? options_.largest_step : std::numeric_limits<double>::infinity();
     double fastest = 0.0;
     for (const Vec3& u : velocity_) fastest = std::max(fastest, norm(u));
     for (const film::Wire& wire : input_.films->wires) fastest = std::max(fastest, norm(wire.velocity));
     // A film that snaps sets the step, down to a twentieth: what is faster still are single vertices out of order.
     constexpr double kShortest = 0.05;
-    if (fastest > 0.0) dt = std::min(dt, std::max(kShortest * dt, kFarthest * input_.films->edge_length / fastest));
+    return fastest > 0.0
+               ? std::min(dt, std::max(kShortest * dt, kFarthest * input_.films->edge_length / fastest))
+               : dt;
+}
+
+/// A step that ends where an event or an output does.
+double VortexSheetSolver::fitted(double dt, double time_limit) const {
     double limit = time_limit;
     const auto& events = input_.films->events;
     if (next_event_ < events.size()) limit = std::min(limit, std::max(events[next_event_].time, time_));
@@ -174,30 +191,34 @@ double VortexSheetSolver::choose_step(double time_limit) const {
     return left < 2.0 * dt ? 0.5 * left : dt;  // no crumb of a step before an output
 }
 
-/// Tension drives the circulations: d phi_r / dt = -p_r / rho, with the pressures that the films ask for.
 void VortexSheetSolver::kick(double dt) {
+    const Circulation rate = tension_rate(mesh(), sheet_geometry(mesh(), topology_));
+    for (std::size_t i = 0; i < phi_.size(); ++i) phi_[i] += dt * rate[i];
+    fix_gauge(topology_, phi_);
+}
+
+/// Tension drives the circulations: d phi_r / dt = -p_r / rho, with the pressures that the films ask for.
+Circulation VortexSheetSolver::tension_rate(const FoamMesh& mesh, const SheetGeometry& geometry) const {
     const film::Problem& films = *input_.films;
-    const SheetGeometry geometry = sheet_geometry(mesh(), topology_);
     const double tension = films.material.film_tension();
     const std::vector<double> pressure =
         options_.compat.form == Form::kFace
             ? film_pressures(topology_, geometry,
-                             mesh::area_gradient(mesh(), film::face_tensions(mesh(), tension, films.tensions)))
-            : dihedral_pressures(mesh(), topology_, 0.5 * tension);
-    Circulation change(topology_.size(), 0.0);
-    for (const VertexId v : mesh().position.ids()) {
+                             mesh::area_gradient(mesh, film::face_tensions(mesh, tension, films.tensions)))
+            : dihedral_pressures(mesh, topology_, 0.5 * tension);
+    Circulation rate(topology_.size(), 0.0);
+    for (const VertexId v : mesh.position.ids()) {
         if (topology_.hold[v] != Hold::kFree) continue;
         for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i)
-            change[i] = -dt / films.material.air_density * pressure[i];
+            rate[i] = -pressure[i] / films.material.air_density;
     }
     if (options_.impulse_projection) {
-        const ImpulseControl control(mesh(), topology_, geometry);
-        std::vector<Vec3> given = control.impulses(change);
+        const ImpulseControl control(mesh, topology_, geometry);
+        std::vector<Vec3> given = control.impulses(rate);
         for (Vec3& p : given) p = -p;
-        control.add(given, change);
+        control.add(given, rate);
     }
-    for (std::size_t i = 0; i < phi_.size(); ++i) phi_[i] += change[i];
-    fix_gauge(topology_, phi_);
+    return rate;
 }
 
 void VortexSheetSolver::damp(double dt) {
@@ -211,16 +232,19 @@ void VortexSheetSolver::damp(double dt) {
     if (options_.grid_filter > 0.0) filter_grid_noise(laplacian, options_.grid_filter, phi_);
 }
 
-/// Velocity of the vertices where they will be half a step from now, as far as the last velocity tells.
+/// The films where they will be some time from now, as far as the last velocity tells.
+FoamMesh VortexSheetSolver::films_ahead(double ahead) const {
+    FoamMesh films = mesh();
+    for (const VertexId v : films.position.ids())
+        if (topology_.hold[v] == Hold::kFree) films.position[v] += ahead * velocity_[v];
+        else films.position[v] += ahead * wire_velocity(v, films.position[v], time_, time_ + ahead);
+    return films;
+}
+
+/// Velocity of the vertices where they will be half a step from now.
 IdVector<VertexId, Vec3> VortexSheetSolver::velocity_at_midpoint(double dt) {
-    FoamMesh middle = mesh();
     const double half = time_ + 0.5 * dt;
-    for (const VertexId v : middle.position.ids()) {
-        if (topology_.hold[v] == Hold::kFree) middle.position[v] += 0.5 * dt * velocity_[v];
-        else if (wire_of_[v] >= 0)
-            middle.position[v] =
-                input_.films->wires[static_cast<std::size_t>(wire_of_[v])].carried(middle.position[v], time_, half);
-    }
+    const FoamMesh middle = films_ahead(0.5 * dt);
     const SheetGeometry geometry = sheet_geometry(middle, topology_);
     if (options_.compat.form == Form::kPoint) return point_velocity(middle, topology_, geometry, phi_, sum_options());
     Flow flow = flow_at(middle, topology_, geometry, phi_, blown_rings(input_.films->wires, half), sum_options());

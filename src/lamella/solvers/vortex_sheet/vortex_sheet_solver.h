@@ -3,6 +3,7 @@
 #include "lamella/sim/registry.h"
 #include "lamella/sim/solver.h"
 #include "lamella/solvers/vortex_sheet/flow.h"
+#include "lamella/solvers/vortex_sheet/implicit_step.h"
 #include "lamella/solvers/vortex_sheet/options.h"
 
 #include "lamella/mesh/tracker.h"
@@ -47,8 +48,12 @@ private:
     void keep_volumes_of(IdVector<mesh::VertexId, Vec3>& motion) const;
     // The stages of a step, in order.
     double choose_step(double time_limit) const;
+    double farthest_step() const;
+    double fitted(double dt, double time_limit) const;
     void kick(double dt);
+    Circulation tension_rate(const mesh::FoamMesh& mesh, const SheetGeometry& geometry) const;
     void damp(double dt);
+    mesh::FoamMesh films_ahead(double ahead) const;
     IdVector<mesh::VertexId, Vec3> velocity_at_midpoint(double dt);
     void obey_wires(const mesh::FoamMesh& mesh, const SheetGeometry& geometry, double from, double to, Flow& flow);
     void move(double dt);
@@ -63,6 +68,16 @@ private:
     /// Runs an edit of the tracker and lets circulations, velocities and wires follow.
     template <class Edit>
     void edit_mesh(Edit&& edit);
+
+    // Semi-implicit tension, in implicit_tension.cpp.
+    void check_implicit() const;
+    bool implicit_possible() const;
+    double slowest_period() const;
+    double implicit_limit() const;
+    double break_even() const;
+    bool starts_implicitly() const;
+    std::optional<ImplicitStep> try_implicit(double time_limit) const;
+    ImplicitStep solve_implicitly(double dt) const;
 
     spatial::VortexSumOptions sum_options() const;
     Vec3 wire_velocity(mesh::VertexId v, const Vec3& at, double from, double to) const;
@@ -80,6 +95,7 @@ private:
     double time_ = 0.0;
     std::int64_t steps_ = 0;
     double step_ = 0.0;  ///< the last one
+    std::int64_t evaluations_ = 0;  ///< of the flow in the last step, 0 if it was explicit
     Vec3 impulse_;       ///< what the flow is to keep, without wires [m^4/s]
     double wire_residual_ = 0.0;
     std::size_t next_event_ = 0;
