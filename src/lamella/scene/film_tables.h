@@ -1,6 +1,6 @@
 #pragma once
 
-// The tables of a scene that say which films there are, shared by all film solvers. docs/scenes.md shows them.
+// The tables of a scene that say which films there are, shared by all film solvers. docs/equilibrium.md shows them.
 
 #include "lamella/film/problem.h"
 #include "lamella/mesh/shapes/wire_films.h"

@@ -6,7 +6,7 @@
 
 namespace lamella::vortex_sheet {
 
-/// sqrt of (omega^2 of mode l over Lamb's) for kernel of length delta on the unit sphere [sheet 6.2, 6.3].
+/// sqrt of (omega^2 of mode l over Lamb's) for kernel of length delta on the unit sphere [method sheet 6.2, 6.3].
 inline double predicted(spatial::VortexKernel kernel, double delta, int l) {
     const auto response = [l](double d) {
         const double t = 1.0 + 0.5 * d * d - d * std::sqrt(1.0 + 0.25 * d * d);

@@ -6,7 +6,7 @@
 
 namespace lamella::vortex_sheet {
 
-/// The Laplacian of jumps along the films [sheet 14.2]: a stiffness matrix over entries, compressed rows, with
+/// The Laplacian of jumps along the films [method sheet 14.2]: a stiffness matrix over entries, compressed rows, with
 ///   phi K phi / 2 = 1/2 sum_f sum_edges 1/2 cot(angle opposite) (Gamma_f(p) - Gamma_f(q))^2
 /// It sees differences of regions only, so it keeps the sum over regions at each vertex, and closed loops around triple
 /// lines, exactly. Cotangents are not taken below zero: diffusion stays dissipative and monotone on any mesh.

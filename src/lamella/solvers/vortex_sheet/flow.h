@@ -45,7 +45,7 @@ struct FluxTarget {
 };
 
 /// Changes phi at the entries of `target` such that their fluxes become what is wanted: conjugate gradients on the
-/// map from circulations to fluxes, which is symmetric and positive (it is the kinetic energy's) [sheet 7.1, 14.3].
+/// map from circulations to fluxes, which is symmetric and positive (it is the kinetic energy's) [method sheet 7.1, 14.3].
 /// Only the triangles at these entries take part in an iteration.
 ///
 /// @param flux  of phi as it is, per entry

@@ -1,6 +1,6 @@
 #pragma once
 
-// Tension in a semi-implicit step, which the fastest capillary waves of the mesh do not limit [sheet 14.4].
+// Tension in a semi-implicit step, which the fastest capillary waves of the mesh do not limit [method sheet 14.4].
 
 #include "lamella/solvers/vortex_sheet/film_filter.h"
 

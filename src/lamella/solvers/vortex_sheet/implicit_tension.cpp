@@ -42,7 +42,7 @@ bool VortexSheetSolver::implicit_possible() const {
 }
 
 /// Of the oscillation l = 2 of a sphere as large as the largest bubble [Lamb32, art. 275]; without bubbles, of a round
-/// film with as much area as all films, in a ring [sheet 14.3].
+/// film with as much area as all films, in a ring [method sheet 14.3].
 double VortexSheetSolver::slowest_period() const {
     const FoamMesh& films = tracker_ ? mesh() : input_.films->mesh;
     double volume = 0.0;
@@ -61,7 +61,7 @@ double VortexSheetSolver::slowest_period() const {
 double VortexSheetSolver::implicit_limit() const { return slowest_period() / options_.steps_per_period; }
 
 /// The step from which on a semi-implicit one is cheaper: it takes about 4 evaluations of the flow on films that do not
-/// meet and 6 with triple lines, the explicit one takes 1 [sheet 14.4].
+/// meet and 6 with triple lines, the explicit one takes 1 [method sheet 14.4].
 double VortexSheetSolver::break_even() const {
     const FoamMesh& films = tracker_ ? mesh() : input_.films->mesh;
     const SheetTopology& topology = tracker_ ? topology_ : sheet_topology(films);

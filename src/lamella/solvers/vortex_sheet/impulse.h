@@ -19,7 +19,7 @@ Vec3 angular_impulse(const mesh::FoamMesh& mesh,
                      const Circulation& phi);
 
 /// Gives each cluster of films without wires the impulse `wanted` by a uniform flow outside of it, phi_outside += c . x
-/// [sheet 14.2]. Tension is an internal force of a cluster: what the discrete kick gives it is an error of the mesh.
+/// [method sheet 14.2]. Tension is an internal force of a cluster: what the discrete kick gives it is an error of the mesh.
 class ImpulseControl {
 public:
     ImpulseControl(const mesh::FoamMesh& mesh, const SheetTopology& topology, const SheetGeometry& geometry);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The face form of the method [sheet 14.1]: strengths of the sheet, fluxes through the vertices, and the two operators
+// The face form of the method [method sheet 14.1]: strengths of the sheet, fluxes through the vertices, and the two operators
 // between pressure and motion, which are transposes of each other, so that the linear system in space conserves energy.
 
 #include "lamella/solvers/vortex_sheet/sheet.h"
@@ -25,7 +25,7 @@ struct SheetGeometry {
 SheetGeometry sheet_geometry(const mesh::FoamMesh& mesh, const SheetTopology& topology);
 
 /// Strength of each triangle as a vortex, area times sheet strength [m^3/s]:
-///   G_f = -1/2 sum_k Gamma_k e_k,   e_k the edge opposite to corner k in the sense of the face  [sheet 5]
+///   G_f = -1/2 sum_k Gamma_k e_k,   e_k the edge opposite to corner k in the sense of the face  [method sheet 5]
 /// A closed film's strengths sum to zero.
 std::vector<Vec3> face_strengths(const mesh::FoamMesh& mesh, const SheetTopology& topology, const Circulation& phi);
 

@@ -6,18 +6,18 @@
 namespace lamella::vortex_sheet {
 
 enum class Integrator {
-    kVerlet,           ///< kick, drift with the velocity at the predicted midpoint, kick [sheet 14.5]
+    kVerlet,           ///< kick, drift with the velocity at the predicted midpoint, kick [method sheet 14.5]
     kSymplecticEuler,  ///< the published one
 };
 enum class Form {
-    kFace,   ///< velocity and vector potential at barycentres; stable on any mesh [sheet 14.1]
+    kFace,   ///< velocity and vector potential at barycentres; stable on any mesh [method sheet 14.1]
     kPoint,  ///< velocity at vertices, curvature from dihedral angles, as published
 };
 
 /// How tension drives the circulations.
 enum class Tension {
     kExplicit,  ///< by the integrator; the fastest capillary wave of the mesh limits the step
-    kImplicit,  ///< semi-implicitly, in place of the integrator [sheet 14.4]
+    kImplicit,  ///< semi-implicitly, in place of the integrator [method sheet 14.4]
     kAuto,      ///< semi-implicitly where that takes fewer evaluations of the flow
 };
 

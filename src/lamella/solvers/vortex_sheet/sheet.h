@@ -16,7 +16,7 @@ namespace lamella::vortex_sheet {
 /// What holds a vertex.
 enum class Hold : std::uint8_t {
     kFree,    ///< it moves with the air
-    kRim,     ///< a film ends here on a wire: no circulation, it moves with the wire [sheet 14.3]
+    kRim,     ///< a film ends here on a wire: no circulation, it moves with the wire [method sheet 14.3]
     kPinned,  ///< a wire runs through the film: it moves with the wire, and its circulation follows from that
 };
 

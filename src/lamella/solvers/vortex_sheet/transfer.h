@@ -1,7 +1,7 @@
 #pragma once
 
 // Circulations and velocities follow the mesh through every edit of the tracker. Jumps across films are interpolated,
-// never the values of one region between vertices whose regions differ [sheet 14.2].
+// never the values of one region between vertices whose regions differ [method sheet 14.2].
 
 #include "lamella/solvers/vortex_sheet/sheet.h"
 

@@ -382,7 +382,7 @@ void VortexSheetSolver::apply(const film::Event& event) {
 }
 
 /// The circulation of the film that bursts is lost. What was a jump between its two sides at its rim is shared out:
-/// the constants of the two regions are chosen such that the jump vanishes in the mean [sheet 10.1].
+/// the constants of the two regions are chosen such that the jump vanishes in the mean [method sheet 10.1].
 void VortexSheetSolver::pop(RegionId region, RegionId into) {
     double jump = 0.0, count = 0.0;
     for (const VertexId v : mesh().position.ids()) {
