@@ -21,6 +21,12 @@ std::optional<RegionId> largest_neighbor(const mesh::FoamMesh& mesh, RegionId re
     return neighbor;
 }
 
+bool share_film(const mesh::FoamMesh& mesh, RegionId a, RegionId b) {
+    return std::any_of(mesh.faces.begin(), mesh.faces.end(), [&](const mesh::Face& face) {
+        return (face.back == a && face.front == b) || (face.back == b && face.front == a);
+    });
+}
+
 std::optional<RegionId> random_outer_bubble(const mesh::FoamMesh& mesh, std::uint64_t seed, std::uint64_t draw) {
     std::vector<RegionId> outer;
     for (const mesh::FilmArea& film : mesh::film_areas(mesh))

@@ -146,8 +146,8 @@ void EquilibriumSolver::apply(const film::Event& event) {
         events_.push_back({time_, "skipped", {}, fmt::format("bubble {} is gone already", index(region))});
         return;
     }
-    answer_.reset();
     if (event.kind == film::Event::Kind::kInflate) {
+        answer_.reset();
         relaxation_->set_target_volume(region, event.volume);
         events_.push_back({time_, "inflate", {}, fmt::format("bubble {}", index(region))});
         return;
@@ -155,6 +155,11 @@ void EquilibriumSolver::apply(const film::Event& event) {
     const RegionId into = event.into == film::kLargestNeighbor
                               ? film::largest_neighbor(films, region).value_or(mesh::kOutside)
                               : event.into;
+    if (!film::share_film(films, region, into)) {
+        events_.push_back({time_, "skipped", {}, fmt::format("regions {} and {} share no film", index(region), index(into))});
+        return;
+    }
+    answer_.reset();
     relaxation_->pop(region, into);
     collect_events();
 }

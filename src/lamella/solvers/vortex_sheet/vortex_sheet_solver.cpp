@@ -151,8 +151,8 @@ sim::StepReport VortexSheetSolver::advance(double time_limit) {
     time_ = dt >= time_limit - time_ ? time_limit : time_ + dt;
     if (verlet && !implicit) kick(0.5 * dt);
     inflate();
+    if (options_.remeshing) edit_mesh([&] { tracker_->remesh(); });
     restore_volumes();
-    if (options_.remeshing) remesh();
     keep_impulse();
     apply_events();
     step_ = dt;
@@ -333,11 +333,6 @@ void VortexSheetSolver::heal(const std::vector<VertexId>& edited) {
     even_out(FilmLaplacian(mesh(), topology_), entries, options_.healing, phi_);
 }
 
-void VortexSheetSolver::remesh() {
-    edit_mesh([&] { tracker_->remesh(); });
-    restore_volumes();
-}
-
 /// Without wires nothing outside pushes the air: what remeshing and rounding did to its impulse is taken back.
 void VortexSheetSolver::keep_impulse() {
     if (!options_.impulse_projection) return;
@@ -376,9 +371,11 @@ void VortexSheetSolver::apply(const film::Event& event) {
         events_.push_back({time_, "inflate", {}, fmt::format("bubble {}", index(region))});
         return;
     }
-    pop(region, event.into == film::kLargestNeighbor
-                    ? film::largest_neighbor(mesh(), region).value_or(mesh::kOutside)
-                    : event.into);
+    const RegionId into = event.into == film::kLargestNeighbor
+                              ? film::largest_neighbor(mesh(), region).value_or(mesh::kOutside)
+                              : event.into;
+    if (film::share_film(mesh(), region, into)) return pop(region, into);
+    events_.push_back({time_, "skipped", {}, fmt::format("regions {} and {} share no film", index(region), index(into))});
 }
 
 /// The circulation of the film that bursts is lost. What was a jump between its two sides at its rim is shared out:

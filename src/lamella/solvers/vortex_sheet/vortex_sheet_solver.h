@@ -58,7 +58,6 @@ private:
     void obey_wires(const mesh::FoamMesh& mesh, const SheetGeometry& geometry, double from, double to, Flow& flow);
     void move(double dt);
     void restore_volumes();
-    void remesh();
     void keep_impulse();
     void apply_events();
     void apply(const film::Event& event);
