@@ -36,8 +36,10 @@ struct Tracker::Impl {
     std::function<void(const Resampling&)> resampler;
     std::vector<TopologyEvent> events;
     CompactionMaps maps;
+    detail::MotionLimit limit;
 
     void compact() {
+        limit.forget();
         auto compacted = mesh.compact();
         maps = {std::move(compacted.vertex), std::move(compacted.face)};
     }
@@ -59,7 +61,7 @@ Tracker::Tracker(FoamMesh mesh, const TrackerOptions& options) {
     if (mesh.periodic()) throw InputError("a mesh in a periodic box cannot change its triangles yet");
     constexpr double kCell = 1.5;  // of the grid, in edges
     impl_ = std::make_unique<Impl>(
-        Impl{options, detail::EditMesh(std::move(mesh), kCell * options.edge_length), {}, {}, {}});
+        Impl{options, detail::EditMesh(std::move(mesh), kCell * options.edge_length), {}, {}, {}, {}});
 }
 
 Tracker::~Tracker() = default;
@@ -77,11 +79,12 @@ void Tracker::set_target_volume(RegionId region, double volume) {
     impl_->mesh.regions()[region].target_volume = volume;
 }
 
-Tracker::MoveReport Tracker::move(const IdVector<VertexId, Vec3>& displacement) {
+Tracker::MoveReport Tracker::move(const IdVector<VertexId, Vec3>& displacement,
+                                  const IdVector<VertexId, double>& later) {
     detail::EditMesh& mesh = impl_->mesh;
     IdVector<VertexId, Vec3> step = displacement;
     const double longest = impl_->options.longest_step * impl_->options.edge_length;
-    const std::size_t limited = detail::limit_displacement(mesh, longest, step);
+    const std::size_t limited = impl_->limit.apply(mesh, longest, later, step);
     for (const VertexId v : step.ids()) step[v] += mesh.at(v);
     mesh.set_positions(step);
     return {limited};
