@@ -34,6 +34,7 @@ struct Tracker::Impl {
     TrackerOptions options;
     detail::EditMesh mesh;
     std::function<void(const Resampling&)> resampler;
+    std::vector<Crossing> held;
     std::vector<TopologyEvent> events;
     CompactionMaps maps;
 
@@ -59,7 +60,7 @@ Tracker::Tracker(FoamMesh mesh, const TrackerOptions& options) {
     if (mesh.periodic()) throw InputError("a mesh in a periodic box cannot change its triangles yet");
     constexpr double kCell = 1.5;  // of the grid, in edges
     impl_ = std::make_unique<Impl>(
-        Impl{options, detail::EditMesh(std::move(mesh), kCell * options.edge_length), {}, {}, {}});
+        Impl{options, detail::EditMesh(std::move(mesh), kCell * options.edge_length), {}, {}, {}, {}});
 }
 
 Tracker::~Tracker() = default;
@@ -77,6 +78,8 @@ void Tracker::set_target_volume(RegionId region, double volume) {
     impl_->mesh.regions()[region].target_volume = volume;
 }
 
+void Tracker::hold(std::vector<Crossing> crossings) { impl_->held = std::move(crossings); }
+
 Tracker::MoveReport Tracker::move(const IdVector<VertexId, Vec3>& displacement) {
     detail::EditMesh& mesh = impl_->mesh;
     IdVector<VertexId, Vec3> step = displacement;
@@ -91,7 +94,7 @@ RemeshReport Tracker::remesh() {
     RemeshReport report;
     const TrackerOptions& options = impl_->options;
     impl_->mesh.index_faces();
-    detail::Workbench bench{impl_->mesh, options, impl_->resampler, report, impl_->events};
+    detail::Workbench bench{impl_->mesh, options, impl_->resampler, impl_->held, report, impl_->events};
     if (options.merging) merge_close_faces(bench);
     split_long_edges(bench);
     collapse_short_edges(bench);
@@ -116,7 +119,7 @@ void Tracker::pop(RegionId region, RegionId into) {
         throw InputError(fmt::format("regions {} and {} share no film that could burst", index(region), index(into)));
     RemeshReport report;
     mesh.index_faces();
-    detail::Workbench bench{mesh, impl_->options, impl_->resampler, report, impl_->events};
+    detail::Workbench bench{mesh, impl_->options, impl_->resampler, impl_->held, report, impl_->events};
     absorb(bench, region, into);
     impl_->events.push_back({TopologyEvent::Kind::kPop, *where, region, into});
     if (impl_->options.separating) separate_vertices(bench);
