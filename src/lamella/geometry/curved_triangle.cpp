@@ -5,6 +5,14 @@
 
 namespace lamella::geometry {
 
+Vec3 point_on(const CurvedTriangle& x, const std::array<double, 3>& barycentric) {
+    const auto& b = barycentric;
+    Vec3 point;
+    for (std::size_t k = 0; k < 3; ++k)
+        point += b[k] * (2.0 * b[k] - 1.0) * x[k] + 4.0 * b[k] * b[(k + 1) % 3] * x[3 + k];
+    return point;
+}
+
 Vec3 edge_conormal(const CurvedTriangle& x, std::size_t opposite) {
     const std::size_t tail = (opposite + 1) % 3, head = (opposite + 2) % 3;
     const Vec3 inward = 2.0 * (x[3 + head] + x[3 + opposite] - x[3 + tail]) - x[opposite] - 0.5 * (x[tail] + x[head]);

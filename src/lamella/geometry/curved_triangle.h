@@ -11,6 +11,10 @@ namespace lamella::geometry {
 /// A quadratic triangle: its corners 0, 1, 2, then the points that it passes through between 0-1, 1-2 and 2-0.
 using CurvedTriangle = std::array<Vec3, 6>;
 
+/// The point of a quadratic triangle with the given barycentric coordinates (they sum to 1):
+///   x = sum_k b_k (2 b_k - 1) x_k + 4 b_k b_(k+1) x_(3+k)
+Vec3 point_on(const CurvedTriangle& x, const std::array<double, 3>& barycentric);
+
 /// Direction in which a quadratic triangle leaves the middle of the edge opposite to a corner: tangent to the triangle,
 /// perpendicular to the edge, of any length.
 ///

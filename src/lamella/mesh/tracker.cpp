@@ -34,6 +34,7 @@ struct Tracker::Impl {
     TrackerOptions options;
     detail::EditMesh mesh;
     std::function<void(const Resampling&)> resampler;
+    std::vector<Crossing> held;
     std::vector<TopologyEvent> events;
     CompactionMaps maps;
     detail::MotionLimit limit;
@@ -79,6 +80,8 @@ void Tracker::set_target_volume(RegionId region, double volume) {
     impl_->mesh.regions()[region].target_volume = volume;
 }
 
+void Tracker::hold(std::vector<Crossing> crossings) { impl_->held = std::move(crossings); }
+
 Tracker::MoveReport Tracker::move(const IdVector<VertexId, Vec3>& displacement,
                                   const IdVector<VertexId, double>& later) {
     detail::EditMesh& mesh = impl_->mesh;
@@ -94,7 +97,7 @@ RemeshReport Tracker::remesh() {
     RemeshReport report;
     const TrackerOptions& options = impl_->options;
     impl_->mesh.index_faces();
-    detail::Workbench bench{impl_->mesh, options, impl_->resampler, report, impl_->events};
+    detail::Workbench bench{impl_->mesh, options, impl_->resampler, impl_->held, report, impl_->events};
     if (options.merging) merge_close_faces(bench);
     split_long_edges(bench);
     collapse_short_edges(bench);
@@ -119,7 +122,7 @@ void Tracker::pop(RegionId region, RegionId into) {
         throw InputError(fmt::format("regions {} and {} share no film that could burst", index(region), index(into)));
     RemeshReport report;
     mesh.index_faces();
-    detail::Workbench bench{mesh, impl_->options, impl_->resampler, report, impl_->events};
+    detail::Workbench bench{mesh, impl_->options, impl_->resampler, impl_->held, report, impl_->events};
     absorb(bench, region, into);
     impl_->events.push_back({TopologyEvent::Kind::kPop, *where, region, into});
     if (impl_->options.separating) separate_vertices(bench);

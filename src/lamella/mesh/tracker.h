@@ -37,6 +37,12 @@ struct TopologyEvent {
 };
 std::string_view name(TopologyEvent::Kind kind);
 
+/// Where two regions that no film parts meet in a point.
+struct Crossing {
+    RegionId a = kOutside, b = kOutside;
+    Vec3 position;  ///< [m]
+};
+
 /// How the values of a vertex follow from values before an edit: value = sum of weight * value(parent).
 ///
 /// It comes right after its edit was accepted, edits in the order they are made:
@@ -105,6 +111,10 @@ public:
     void pop(RegionId region, RegionId into);
 
     void set_target_volume(RegionId region, double volume);
+
+    /// These crossings stay closed from now on: within two edge lengths of its place, the two regions of each are not
+    /// parted. For films that are shorter at rest than the mesh can show, which would part and close without end.
+    void hold(std::vector<Crossing> crossings);
 
     /// Topological events since the last call.
     std::vector<TopologyEvent> take_events();

@@ -6,42 +6,12 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
+#include "../sim/state_memory.h"
+
 #include <string>
 
 namespace lamella::equilibrium {
 namespace {
-
-/// A checkpoint in memory.
-struct Memory : sim::StateWriter, sim::StateReader {
-    std::map<std::string, std::vector<double>, std::less<>> reals;
-    std::map<std::string, std::vector<std::int64_t>, std::less<>> integers;
-
-    void write(std::string_view name, std::span<const double> v) override {
-        reals[std::string(name)].assign(v.begin(), v.end());
-    }
-    void write(std::string_view name, std::span<const std::int64_t> v) override {
-        integers[std::string(name)].assign(v.begin(), v.end());
-    }
-    void write(std::string_view name, std::span<const std::int32_t> v) override {
-        integers[std::string(name)].assign(v.begin(), v.end());
-    }
-    template <class From, class To>
-    static void fetch(const From& from, std::string_view name, std::size_t count, To& values) {
-        const auto it = from.find(name);
-        if (it == from.end() || it->second.size() != count) throw InputError(std::string(name));
-        values.assign(it->second.begin(), it->second.end());
-    }
-    void read(std::string_view name, std::size_t count, std::vector<double>& v) override { fetch(reals, name, count, v); }
-    void read(std::string_view name, std::size_t count, std::vector<std::int64_t>& v) override {
-        fetch(integers, name, count, v);
-    }
-    void read(std::string_view name, std::size_t count, std::vector<std::int32_t>& v) override {
-        std::vector<std::int64_t> wide;
-        fetch(integers, name, count, wide);
-        v.assign(wide.begin(), wide.end());
-    }
-};
 
 constexpr const char* kCluster = R"(
 solver = "equilibrium"
@@ -94,7 +64,7 @@ TEST(EquilibriumSolver, GoesOnFromACheckpointWithTheSameBits) {
         auto first = solver_of(kCluster);
         first->start({});
         run(*first, 3.0, stop);
-        Memory memory;
+        test::StateMemory memory;
         first->save(memory);
         auto second = solver_of(kCluster);
         second->load(memory);

@@ -25,6 +25,17 @@ TEST(CurvedTriangle, LeavesItsEdgeAsTheParaboloidItLiesOnDoes) {
     }
 }
 
+TEST(CurvedTriangle, PassesThroughItsPointsAndLiesOnItsParaboloid) {
+    const auto lift = [](double x, double y) { return Vec3{{x, y, 0.3 * x * x - 0.2 * x * y + 0.5 * y * y}}; };
+    const Vec3 p0 = lift(0.1, 0.2), p1 = lift(1.3, 0.4), p2 = lift(0.5, 1.1);
+    const auto middle = [&](const Vec3& a, const Vec3& b) { return lift(0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])); };
+    const CurvedTriangle x{p0, p1, p2, middle(p0, p1), middle(p1, p2), middle(p2, p0)};
+    EXPECT_NEAR(norm(point_on(x, {0.0, 1.0, 0.0}) - p1), 0.0, 1e-15);
+    EXPECT_NEAR(norm(point_on(x, {0.0, 0.5, 0.5}) - x[4]), 0.0, 1e-15);
+    const Vec3 at = point_on(x, {0.2, 0.3, 0.5});
+    EXPECT_NEAR(norm(at - lift(0.2 * 0.1 + 0.3 * 1.3 + 0.5 * 0.5, 0.2 * 0.2 + 0.3 * 0.4 + 0.5 * 1.1)), 0.0, 1e-15);
+}
+
 TEST(CurvedTriangle, OfAFlatTriangleLeavesInItsPlane) {
     const Vec3 a{}, b{{2.0, 0.0, 0.0}}, c{{0.5, 1.5, 0.0}};
     const CurvedTriangle x{a, b, c, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)};

@@ -26,8 +26,15 @@ struct Case {
     double estimate_error = quadratic_error > 1e-6 ? 2.5e-6 : 2e-7;
 };
 
+void expect_plateau(const RestAnswer& a, const std::string& scene) {
+    EXPECT_LT(a.film_angles.mean, 0.1 * kDegree) << scene;
+    EXPECT_LT(a.film_angles.largest, 0.3 * kDegree) << scene;
+    EXPECT_LT(a.junction_angles.mean, 0.1 * kDegree) << scene;
+    EXPECT_LT(a.junction_angles.largest, 0.3 * kDegree) << scene;
+}
+
 Rest expect_rest(const Case& c, bool stable = true) {
-    const Rest rest = rest_of(c.scene);
+    const Rest rest = rest_of(c.scene, {"equilibrium.eigenvalue=false"});
     const RestAnswer& a = rest.answer;
     const auto faces = static_cast<double>(rest.faces);
     std::printf(
@@ -42,6 +49,7 @@ Rest expect_rest(const Case& c, bool stable = true) {
     EXPECT_LT(rest.volume_error, 1e-9) << c.scene;
     EXPECT_LT(rest.steps, 30) << c.scene;
     EXPECT_EQ(a.stable(), stable) << c.scene;
+    expect_plateau(a, c.scene);
     for (std::size_t k = 0; k < c.pressure.size(); ++k)
         EXPECT_NEAR(a.pressure[k + 1] / c.pressure[k], 1.0, c.pressure_error) << c.scene;
     return rest;
@@ -114,17 +122,16 @@ TEST(EquilibriumReference, TripleAndQuadruple) {
     expect_rest({"quadruple-bubble", 16.8965576436161, 1e-7, {2.81609294060269}, 1e-5});
 }
 
-TEST(EquilibriumReference, AnglesOfPlateauOnCurvedPatches) {
-    for (const char* scene :
-         {"double-bubble-1", "double-bubble-0.5", "double-bubble-0.125", "triple-bubble", "quadruple-bubble"})
-        for (const char* size : {"-small", ""}) {
-            const RestAnswer a = rest_of(scene + std::string(size)).answer;
-            const bool fine = std::string(size).empty();  // about 4,600 faces, else about 1,000
-            EXPECT_LT(a.film_angles.mean, (fine ? 0.1 : 0.5) * kDegree) << scene << size;
-            EXPECT_LT(a.film_angles.largest, (fine ? 0.3 : 1.5) * kDegree) << scene << size;
-            EXPECT_LT(a.junction_angles.mean, (fine ? 0.1 : 0.5) * kDegree) << scene << size;
-            EXPECT_LT(a.junction_angles.largest, (fine ? 0.3 : 1.5) * kDegree) << scene << size;
-        }
+TEST(EquilibriumReference, AnglesOfPlateauOnFinerMeshes) {
+    // Films one edge wide; expect_rest asks the same of every other film.
+    for (const char* scene : {"cluster-6", "cluster-8", "frame-cube"})
+        expect_plateau(rest_of(scene, {"equilibrium.eigenvalue=false"}).answer, scene);
+}
+
+TEST(EquilibriumReference, AnglesAtJunctionsNeedFineTriangles) {
+    // Kelvin's junctions: the error falls with h^0.65 on even meshes, which no mesh of use makes small.
+    const RestAnswer even = rest_of("kelvin", {"equilibrium.eigenvalue=false", "equilibrium.angle_tolerance=0"}).answer;
+    EXPECT_NEAR(even.junction_angles.mean / kDegree, 1.02, 0.05);
 }
 
 TEST(EquilibriumReference, ClustersFromRandomHeaps) {
@@ -216,7 +223,8 @@ TEST(EquilibriumReference, FoamsThatFillSpace) {
     expect_rest({"weaire-phelan-small", 4.0 * 5.28833901559975, 2e-6});
     expect_rest({"weaire-phelan", 4.0 * 5.28833901559975, 1e-7});
     for (const auto& [scene, error] : {std::pair{"weaire-phelan-small", 2e-4}, std::pair{"weaire-phelan", 2e-5}}) {
-        const RestAnswer a = rest_of(scene).answer;
+        const RestAnswer a =
+            rest_of(scene, {"equilibrium.eigenvalue=false", "equilibrium.angle_tolerance=0"}).answer;
         const auto [low, high] = std::minmax_element(a.pressure.begin() + 1, a.pressure.end());
         std::printf("%s: dp %.9f\n", scene, *high - *low);
         EXPECT_NEAR((*high - *low) / 0.166202435, 1.0, error) << scene;

@@ -62,7 +62,7 @@ TEST(WarpedStart, ComesToRestInFewerThanThirtySteps) {
             options.edge_length = c.edge;
             Relaxation relaxation(mesh, options);
             while (!relaxation.at_rest() && relaxation.steps() < 100) relaxation.advance();
-            const RestAnswer answer = rest_answer(relaxation.mesh(), {}, Goal::kMinimum, false);
+            const RestAnswer answer = rest_answer(relaxation.mesh(), {}, {.eigenvalue = false});
             const auto faces = static_cast<double>(relaxation.mesh().faces.size());
             std::printf("%-15s x %.1f: start area %+5.1f %%, F %5.0f, steps %3d, residual %.1e, area %+.1e\n",
                         c.name.c_str(), stretch, 100.0 * (start / c.area - 1.0), faces, relaxation.iterations(),

@@ -111,6 +111,14 @@ void pinches(const EditMesh& mesh, VertexId v, const Sectors& sectors, std::vect
     }
 }
 
+bool is_held(const Workbench& bench, const Vec3& place, RegionId a, RegionId b) {
+    const double near = bench.length(2.0);
+    return std::any_of(bench.held.begin(), bench.held.end(), [&](const Crossing& crossing) {
+        const bool same = (crossing.a == a && crossing.b == b) || (crossing.a == b && crossing.b == a);
+        return same && squared_norm(crossing.position - place) < near * near;
+    });
+}
+
 /// Two sectors without a common face: the faces of one of them may leave the other.
 void crossings(const Workbench& bench, VertexId v, const Sectors& sectors, std::vector<Parting>& partings) {
     const EditMesh& mesh = bench.mesh;
@@ -124,6 +132,7 @@ void crossings(const Workbench& bench, VertexId v, const Sectors& sectors, std::
             Parting parting;
             parting.a = sectors.labels[p];
             parting.b = sectors.labels[q];
+            if (is_held(bench, mesh.at(v), parting.a, parting.b)) continue;
             for (std::size_t i = 0; i < sectors.faces.size(); ++i)
                 if (touches(i, p)) parting.move(i);
             const Vec3 towards = centroid(mesh, v, [&](std::size_t i) { return touches(i, p); });

@@ -15,6 +15,7 @@ struct Workbench {
     EditMesh& mesh;
     const TrackerOptions& options;
     const std::function<void(const Resampling&)>& resampler;
+    const std::vector<Crossing>& held;  ///< these are not parted
     RemeshReport& report;
     std::vector<TopologyEvent>& events;
     bool topology_changed = false;  ///< regions may have come apart: relabel

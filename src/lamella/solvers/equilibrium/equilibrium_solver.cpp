@@ -84,7 +84,8 @@ void EquilibriumSolver::come_to_rest() {
         answer_.emplace();
         return;
     }
-    answer_ = rest_answer(relaxation_->mesh(), input_.films->tensions, options_.goal, options_.eigenvalue);
+    answer_ = rest_answer(relaxation_->mesh(), input_.films->tensions,
+                          {options_.goal, options_.eigenvalue, options_.angle_tolerance});
 }
 
 /// One round: shaken volumes come to rest, then the true ones do; the smaller area stays.

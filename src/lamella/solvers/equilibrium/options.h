@@ -15,6 +15,7 @@ struct Options {
     bool merging = true;
     bool separating = true;
     bool eigenvalue = true;
+    double angle_tolerance = 0.0;
     int anneal_rounds = 0;
     double anneal_strength = 0.8;
 
@@ -33,6 +34,9 @@ struct Options {
         option("merging", merging, {"films that touch become one"});
         option("separating", separating, {"crossings that Plateau's laws forbid part; false keeps them"});
         option("eigenvalue", eigenvalue, {"report the lowest eigenvalue of the second variation"});
+        option("angle_tolerance", angle_tolerance, sim::between(0.0, 0.2),
+               {"triangles are made finer where angles break Plateau's laws by more, and the angles measured there; 0: on the mesh as it is",
+                "rad"});
         option("anneal_rounds", anneal_rounds, sim::between(0, 10000),
                {"bubbles are inflated and deflated at random so many times, and the least area is kept"});
         option("anneal_strength", anneal_strength, sim::strictly_between(0.0, 1.0),

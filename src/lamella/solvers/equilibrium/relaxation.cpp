@@ -86,11 +86,13 @@ void Relaxation::take(FoamMesh mesh, double edge_length) {
     options.merging = options_.merging;
     options.separating = options_.separating;
     tracker_ = std::make_unique<mesh::Tracker>(std::move(mesh), options);
+    tracker_->hold(crossings_.held());
 }
 
 void Relaxation::restart(FoamMesh mesh, double edge_length) {
     gas_.clear();
     for (const mesh::Region& r : mesh.regions) gas_.push_back(r.kind == RegionKind::kClosed ? r.target_volume : 0.0);
+    crossings_ = {};
     take(std::move(mesh), edge_length);
     stage_ = Stage::kFlow;
 }
@@ -124,6 +126,8 @@ void Relaxation::heed(const std::vector<mesh::TopologyEvent>& events) {
     gas_.resize(mesh().regions.size(), 0.0);
     for (const mesh::TopologyEvent& event : events) {
         events_.push_back(event);
+        if (event.kind == Kind::kT1 && crossings_.note_parting(event, edge_length_) && tracker_)
+            tracker_->hold(crossings_.held());
         const bool own_gas = event.a != mesh::kOutside && gas_[event.a] > 0.0;
         if (event.kind == Kind::kSplit && own_gas) {
             gas_[event.a] = mesh().regions[event.a].target_volume;
@@ -249,6 +253,7 @@ bool Relaxation::leaves_crossing() {
     mesh::TrackerOptions generous = tracker_->options();
     generous.separation_cost = 0.05;
     mesh::Tracker parting(mesh(), generous);
+    parting.hold(crossings_.held());
     parting.remesh();
     const std::vector<mesh::TopologyEvent> events = parting.take_events();
     take(parting.mesh(), edge_length_);
@@ -259,13 +264,21 @@ bool Relaxation::leaves_crossing() {
 
 void Relaxation::refine() {
     const mesh::EdgeFaces edges = mesh::edge_faces(mesh());
+    crossings_ = {};  // smaller films can be seen from here on
     take(mesh::subdivide(mesh(), edges, mesh::edge_middles(mesh(), edges)), 0.5 * edge_length_);
+}
+
+/// The foam is about to be another: what would not part before may now.
+void Relaxation::forget_crossings() {
+    crossings_ = {};
+    if (tracker_) tracker_->hold({});
 }
 
 std::vector<mesh::TopologyEvent> Relaxation::take_events() { return std::exchange(events_, {}); }
 
 void Relaxation::pop(mesh::RegionId region, mesh::RegionId into) {
     if (!tracker_) throw InputError("films whose mesh stays as it is (periodic, or stationary) cannot burst");
+    forget_crossings();
     tracker_->pop(region, into);
     heed(tracker_->take_events());
     stage_ = Stage::kFlow;
@@ -275,10 +288,11 @@ void Relaxation::set_target_volume(mesh::RegionId region, double volume) {
     if (tracker_) tracker_->set_target_volume(region, volume);
     else frozen_.regions[region].target_volume = volume;
     gas_[region] = volume;
+    forget_crossings();
     stage_ = Stage::kFlow;
 }
 
-Relaxation::Relaxation(sim::StateReader& in, const RelaxationOptions& options) : options_(options) {
+Relaxation::Relaxation(sim::StateReader& in, const RelaxationOptions& options) : options_(options), crossings_(in) {
     take(sim::load_mesh(in, "mesh"), in.read_double("relaxation/edge_length"));
     const std::int64_t stage = in.read_integer("relaxation/stage");
     if (stage < 0 || stage > static_cast<std::int64_t>(Stage::kRest))
@@ -296,6 +310,7 @@ Relaxation::Relaxation(sim::StateReader& in, const RelaxationOptions& options) :
 
 void Relaxation::save(sim::StateWriter& out) const {
     sim::save_mesh(out, "mesh", mesh());
+    crossings_.save(out);
     out.write_value("relaxation/edge_length", edge_length_);
     out.write_value("relaxation/stage", static_cast<std::int64_t>(stage_));
     out.write_value("relaxation/residual", residual_);

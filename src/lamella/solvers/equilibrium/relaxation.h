@@ -3,6 +3,7 @@
 #include "lamella/mesh/foam_mesh.h"
 #include "lamella/mesh/tracker.h"
 #include "lamella/sim/archive.h"
+#include "lamella/solvers/equilibrium/crossing_memory.h"
 #include "lamella/solvers/equilibrium/newton.h"
 #include "lamella/solvers/equilibrium/patches.h"
 
@@ -73,6 +74,7 @@ private:
     bool tracker_changes_topology();
     void heed(const std::vector<mesh::TopologyEvent>& events);
     bool leaves_crossing();
+    void forget_crossings();
     void refine();
     double flow_time() const;
     void measure();
@@ -89,6 +91,7 @@ private:
     int failed_settles_ = 0;
     int slow_steps_ = 0;
     int crossing_tries_ = 0;
+    CrossingMemory crossings_;
     IdVector<mesh::RegionId, double> gas_;  ///< that each bubble was given [m^3]; 0 for cavities and open regions
     double best_residual_ = 1.0;
     std::vector<mesh::TopologyEvent> events_;

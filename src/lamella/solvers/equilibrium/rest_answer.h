@@ -35,19 +35,17 @@ struct RestAnswer {
     bool stable() const { return converged && index == 0 && irregular_vertices == 0; }
 };
 
-/// Raises a resting mesh to quadratic patches, lets them come to rest, and examines them.
-/// @param with_eigenvalue  the lowest eigenvalue costs about as much as all the rest
+/// What is asked of films at rest.
+struct RestQuestions {
+    Goal goal = Goal::kMinimum;
+    bool eigenvalue = true;         ///< the lowest of the second variation: costs about as much as all the rest
+    double angle_tolerance = 0.0;   ///< patches are made finer where angles are off by more [rad]; 0: they stay as they are
+};
+
+/// Raises a resting mesh to quadratic patches, lets them come to rest, and examines them. The angles are those of finer
+/// patches where angle_tolerance asks for some; area, pressures and stability belong to the patches of the mesh.
 RestAnswer rest_answer(const mesh::FoamMesh& mesh,
                        const std::vector<FilmTension>& tension,
-                       Goal goal,
-                       bool with_eigenvalue);
-
-/// Angles between the three films at the middle of each triple edge of quadratic patches, weighted by its length, and
-/// between the lines at each junction.
-struct PatchAngles {
-    mesh::AngleDeviation films, junctions;
-    std::size_t triple_edges = 0, junction_points = 0;
-};
-PatchAngles patch_angles(const mesh::FoamMesh& mesh, const mesh::EdgeFaces& edges, const Patches& patches);
+                       const RestQuestions& ask);
 
 }  // namespace lamella::equilibrium
