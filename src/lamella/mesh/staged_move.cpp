@@ -13,8 +13,11 @@ std::size_t staged_move(Tracker& tracker, const IdVector<VertexId, Vec3>& displa
     const double share = std::min(1.0 / moves, longest > 0.0 ? reach / longest : 1.0);
     IdVector<VertexId, Vec3> part = displacement;
     for (Vec3& d : part) d *= share;
+    IdVector<VertexId, double> later(part.size());
+    if (moves > 1.0)
+        for (const VertexId v : part.ids()) later[v] = (moves - 1.0) * norm(part[v]);
     std::size_t limited = 0;
-    for (int k = 0; k < static_cast<int>(moves); ++k) limited = std::max(limited, tracker.move(part).limited);
+    for (int k = 0; k < static_cast<int>(moves); ++k) limited = std::max(limited, tracker.move(part, later).limited);
     return limited;
 }
 

@@ -37,8 +37,10 @@ struct Tracker::Impl {
     std::vector<Crossing> held;
     std::vector<TopologyEvent> events;
     CompactionMaps maps;
+    detail::MotionLimit limit;
 
     void compact() {
+        limit.forget();
         auto compacted = mesh.compact();
         maps = {std::move(compacted.vertex), std::move(compacted.face)};
     }
@@ -80,11 +82,12 @@ void Tracker::set_target_volume(RegionId region, double volume) {
 
 void Tracker::hold(std::vector<Crossing> crossings) { impl_->held = std::move(crossings); }
 
-Tracker::MoveReport Tracker::move(const IdVector<VertexId, Vec3>& displacement) {
+Tracker::MoveReport Tracker::move(const IdVector<VertexId, Vec3>& displacement,
+                                  const IdVector<VertexId, double>& later) {
     detail::EditMesh& mesh = impl_->mesh;
     IdVector<VertexId, Vec3> step = displacement;
     const double longest = impl_->options.longest_step * impl_->options.edge_length;
-    const std::size_t limited = detail::limit_displacement(mesh, longest, step);
+    const std::size_t limited = impl_->limit.apply(mesh, longest, later, step);
     for (const VertexId v : step.ids()) step[v] += mesh.at(v);
     mesh.set_positions(step);
     return {limited};

@@ -96,10 +96,12 @@ public:
     /// Moves the vertices as far along `displacement` [m] as is safe: no vertex farther than the longest step, and no
     /// two primitives (vertex and face, edge and edge) by more than 0.9 of their distance together, so that nothing
     /// can cross. Vertices on wires move as told too: the caller knows where the wire goes.
+    /// @param later  how far each vertex will probably go in further calls before the next `remesh` [m]. A good guess spares
+    ///               them the search for films that are near; the motion is the same without it.
     struct MoveReport {
         std::size_t limited = 0;  ///< vertices that did not go all the way
     };
-    MoveReport move(const IdVector<VertexId, Vec3>& displacement);
+    MoveReport move(const IdVector<VertexId, Vec3>& displacement, const IdVector<VertexId, double>& later = {});
 
     /// One cycle: merge, split, collapse, flip, separate, relabel, absorb, compact.
     RemeshReport remesh();

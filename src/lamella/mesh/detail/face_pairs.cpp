@@ -1,11 +1,12 @@
 #include "lamella/mesh/detail/face_pairs.h"
 
+#include <cmath>
 #include <functional>
+#include <limits>
 
 namespace lamella::mesh::detail {
 namespace {
 
-constexpr std::size_t kMostWide = 8;
 constexpr double kMostCells = 1 << 20;  // per axis
 
 double width(const Box& box) {
@@ -19,12 +20,19 @@ struct Keyed {
     friend bool operator<(const Keyed& a, const Keyed& b) { return a.key != b.key ? a.key < b.key : a.item < b.item; }
 };
 
-/// The width that all but the widest few do not exceed.
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+float rounded_down(double x) { return std::nextafter(static_cast<float>(x), -kInfinity); }
+float rounded_up(double x) { return std::nextafter(static_cast<float>(x), kInfinity); }
+
+/// The width that all but the widest few do not exceed: so few that all they meet is less than the rest.
 double common_width(const std::vector<FacePairs::Item>& items) {
     std::vector<double> widths;
     widths.reserve(items.size());
     for (const auto& item : items) widths.push_back(width(item.box));
-    const std::size_t few = std::min(kMostWide, widths.size() - 1);
+    constexpr double kWidest = 2.0;
+    const double few_in_all = kWidest * std::sqrt(static_cast<double>(widths.size()));
+    const std::size_t few = std::min(static_cast<std::size_t>(few_in_all), widths.size() - 1);
     const auto place = widths.begin() + static_cast<std::ptrdiff_t>(few);
     std::nth_element(widths.begin(), place, widths.end(), std::greater<>());
     return *place;
@@ -57,11 +65,18 @@ FacePairs::FacePairs(const std::vector<Item>& items) {
     std::sort(order.begin(), order.end());
     key_.reserve(items.size());
     face_.reserve(items.size());
-    box_.reserve(items.size());
     for (const Keyed& keyed : order) {
         key_.push_back(keyed.key);
         face_.push_back(items[keyed.item].face);
-        box_.push_back(items[keyed.item].box);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        low_[k].assign(items.size() + Lanes::size(), kInfinity);
+        high_[k].assign(items.size() + Lanes::size(), -kInfinity);
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            const Box& box = items[order[i].item].box;
+            low_[k][i] = rounded_down(box.low[k] - all.low[k]);
+            high_[k][i] = rounded_up(box.high[k] - all.low[k]);
+        }
     }
 }
 

@@ -1,21 +1,23 @@
 #pragma once
 
+#include "lamella/core/host_device.h"
 #include "lamella/mesh/detail/face_grid.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <experimental/simd>
 #include <vector>
 
 namespace lamella::mesh::detail {
 
-/// All pairs of faces whose boxes overlap, for passes over a whole mesh that does not change meanwhile.
+/// All pairs of faces whose boxes overlap (to the rounding of a float), for passes over a whole mesh that does not change meanwhile.
 ///
 /// Boxes are sorted by the cubic cell of their centers; a cell is as wide as the widest box, so that overlapping boxes
 /// lie in neighboring cells. These are a few runs of the sorted list, which move along with the cell: every pair is
-/// found once, in sequential reads, without a hash. The few widest boxes stand apart and meet everyone, so that a
-/// single huge face does not make all cells huge.
+/// found once, in sequential reads, without a hash. The few widest boxes, as of films that snap, stand apart and meet
+/// everyone, so that they do not make all cells huge. Sixteen boxes are looked at together.
 class FacePairs {
 public:
     struct Item {
@@ -70,21 +72,30 @@ private:
     }
 
     template <class Found>
-    void meet(std::size_t i, std::size_t begin, std::size_t end, Found&& found) const {
-        const Box& a = box_[i];
-        for (std::size_t j = begin; j < end; ++j) {
-            const Box& b = box_[j];
-            // One branch: most boxes in reach miss each other along some axis, and which one is hard to predict.
-            const bool apart = (a.low[0] > b.high[0]) | (b.low[0] > a.high[0]) | (a.low[1] > b.high[1]) |
-                               (b.low[1] > a.high[1]) | (a.low[2] > b.high[2]) | (b.low[2] > a.high[2]);
-            if (!apart) found(std::min(face_[i], face_[j]), std::max(face_[i], face_[j]));
+    LAMELLA_ALWAYS_INLINE void meet(std::size_t i, std::size_t begin, std::size_t end, Found&& found) const {
+        const auto all = [&](const std::vector<float>& side) { return Lanes(side[i]); };
+        const auto load = [&](const std::vector<float>& side, std::size_t j) {
+            return Lanes(side.data() + j, std::experimental::element_aligned);
+        };
+        for (std::size_t j = begin; j < end; j += Lanes::size()) {
+            auto near = load(low_[0], j) <= all(high_[0]) && load(high_[0], j) >= all(low_[0]);
+            for (std::size_t k = 1; k < 3; ++k)
+                near = near && load(low_[k], j) <= all(high_[k]) && load(high_[k], j) >= all(low_[k]);
+            while (std::experimental::any_of(near)) {
+                const int lane = std::experimental::find_first_set(near);
+                near[lane] = false;
+                const std::size_t other = j + static_cast<std::size_t>(lane);
+                if (other < end) found(std::min(face_[i], face_[other]), std::max(face_[i], face_[other]));
+            }
         }
     }
+
+    using Lanes = std::experimental::simd<float, std::experimental::simd_abi::deduce_t<float, 16>>;
 
     std::size_t small_ = 0;  // those from here on are the widest
     std::vector<std::uint64_t> key_;
     std::vector<FaceId> face_;
-    std::vector<Box> box_;
+    std::array<std::vector<float>, 3> low_, high_;  ///< boxes, rounded outwards, and empty ones after the last
 };
 
 }  // namespace lamella::mesh::detail

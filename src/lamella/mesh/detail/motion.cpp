@@ -14,21 +14,56 @@ namespace {
 constexpr double kTogether = 0.9;
 constexpr std::size_t kFacesPerBlock = 256;
 
-struct Limit {
-    VertexId vertex;
-    double distance;
-};
+/// Whether the boxes of two sets of points come closer than `reach` along every axis. It spares most exact distances: of
+/// the primitives of two faces whose boxes meet nine in ten are farther apart than they move.
+template <std::size_t N, std::size_t M>
+bool boxes_near(const std::array<Vec3, N>& a, const std::array<Vec3, M>& b, double reach) {
+    bool near = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        double low_a = a[0][k], high_a = a[0][k], low_b = b[0][k], high_b = b[0][k];
+        for (std::size_t i = 1; i < N; ++i) {
+            low_a = std::min(low_a, a[i][k]);
+            high_a = std::max(high_a, a[i][k]);
+        }
+        for (std::size_t i = 1; i < M; ++i) {
+            low_b = std::min(low_b, b[i][k]);
+            high_b = std::max(high_b, b[i][k]);
+        }
+        near &= (low_a - high_b <= reach) & (low_b - high_a <= reach);
+    }
+    return near;
+}
+
+using Pair = MotionLimit::Pair;
+using Lengths = IdVector<VertexId, double>;
+
+double squared_distance(const EditMesh& mesh, const Pair& pair) {
+    const Vec3 &a = mesh.at(pair.vertex[0]), &b = mesh.at(pair.vertex[1]), &c = mesh.at(pair.vertex[2]),
+               &d = mesh.at(pair.vertex[3]);
+    return pair.first == 1 ? geometry::squared_distance_to_triangle(a, b, c, d)
+                           : geometry::squared_distance_of_segments(a, b, c, d);
+}
+
+/// How far the two primitives go together at most: the sum over both of the farthest vertex.
+double together(const Pair& pair, const Lengths& length) {
+    const double a = length[pair.vertex[0]], b = length[pair.vertex[1]], c = length[pair.vertex[2]],
+                 d = length[pair.vertex[3]];
+    return pair.first == 1 ? a + std::max({b, c, d}) : std::max(a, b) + std::max(c, d);
+}
+
+bool in_danger(double way, double squared_distance) { return way * way > kTogether * kTogether * squared_distance; }
 
 /// Each vertex and each edge belongs to the lowest face that has it, so that every pair is looked at once.
 struct Owned {
     std::uint8_t vertices = 0, edges = 0;  // bit k: corner k, edge from corner k to the next
 };
 
-class PairLimits {
+/// Which pairs are in danger when the vertices go as far as `length`.
+class DangerousPairs {
 public:
-    PairLimits(const EditMesh& mesh, const IdVector<VertexId, double>& length);
-    /// Appends the limits that two faces put on each other.
-    void of_pair(FaceId f, FaceId g, std::vector<Limit>& limits) const;
+    DangerousPairs(const EditMesh& mesh, const Lengths& length);
+    /// Appends those of two faces.
+    void of_faces(FaceId f, FaceId g, std::vector<Pair>& found) const;
     /// Every face in a box that meets the box of each face it could reach.
     std::vector<FacePairs::Item> boxes() const;
 
@@ -36,14 +71,14 @@ private:
     double most(const Face& face) const {
         return std::max({length_[face.vertices[0]], length_[face.vertices[1]], length_[face.vertices[2]]});
     }
-    void vertices_against_face(FaceId f, FaceId g, std::vector<Limit>& limits) const;
+    void vertices_against_face(FaceId f, FaceId g, std::vector<Pair>& found) const;
 
     const EditMesh& mesh_;
-    const IdVector<VertexId, double>& length_;
+    const Lengths& length_;
     IdVector<FaceId, Owned> owned_;
 };
 
-PairLimits::PairLimits(const EditMesh& mesh, const IdVector<VertexId, double>& length)
+DangerousPairs::DangerousPairs(const EditMesh& mesh, const Lengths& length)
     : mesh_(mesh), length_(length), owned_(mesh.mesh().faces.size()) {
     parallel_for(owned_.size(), [&](std::size_t i) {
         const FaceId f = static_cast<FaceId>(i);
@@ -59,47 +94,42 @@ PairLimits::PairLimits(const EditMesh& mesh, const IdVector<VertexId, double>& l
     });
 }
 
-void PairLimits::vertices_against_face(FaceId f, FaceId g, std::vector<Limit>& limits) const {
+void DangerousPairs::vertices_against_face(FaceId f, FaceId g, std::vector<Pair>& found) const {
+    if (owned_[f].vertices == 0) return;
     const Face& face = mesh_.face(g);
     const auto t = mesh_.corners(g);
-    const double most_g = most(face);
     for (std::size_t k = 0; k < 3; ++k) {
         const VertexId v = mesh_.face(f).vertices[k];
         if (!((owned_[f].vertices >> k) & 1U) || face.has(v)) continue;
-        const double together = length_[v] + most_g;
-        const double squared = geometry::squared_distance_to_triangle(mesh_.at(v), t[0], t[1], t[2]);
-        if (together * together <= kTogether * kTogether * squared) continue;
-        const double allowed = 0.5 * kTogether * std::sqrt(squared);
-        for (const VertexId w : {v, face.vertices[0], face.vertices[1], face.vertices[2]})
-            limits.push_back({w, allowed});
+        const Pair pair{{v, face.vertices[0], face.vertices[1], face.vertices[2]}, 1};
+        const double way = together(pair, length_);
+        if (boxes_near<1, 3>({mesh_.at(v)}, t, way / kTogether) && in_danger(way, squared_distance(mesh_, pair)))
+            found.push_back(pair);
     }
 }
 
-void PairLimits::of_pair(FaceId f, FaceId g, std::vector<Limit>& limits) const {
-    vertices_against_face(f, g, limits);
-    vertices_against_face(g, f, limits);
+void DangerousPairs::of_faces(FaceId f, FaceId g, std::vector<Pair>& found) const {
+    vertices_against_face(f, g, found);
+    vertices_against_face(g, f, found);
+    if (owned_[f].edges == 0 || owned_[g].edges == 0) return;
     const auto& u = mesh_.face(f).vertices;
     const auto& v = mesh_.face(g).vertices;
     for (std::size_t i = 0; i < 3; ++i) {
         if (!((owned_[f].edges >> i) & 1U)) continue;
-        const VertexId a = u[i];
-        const VertexId b = u[(i + 1) % 3];
-        const double most_f = std::max(length_[a], length_[b]);
+        const VertexId a = u[i], b = u[(i + 1) % 3];
         for (std::size_t j = 0; j < 3; ++j) {
-            const VertexId c = v[j];
-            const VertexId d = v[(j + 1) % 3];
+            const VertexId c = v[j], d = v[(j + 1) % 3];
             if (!((owned_[g].edges >> j) & 1U) || a == c || a == d || b == c || b == d) continue;
-            const double together = most_f + std::max(length_[c], length_[d]);
-            const double squared =
-                geometry::squared_distance_of_segments(mesh_.at(a), mesh_.at(b), mesh_.at(c), mesh_.at(d));
-            if (together * together <= kTogether * kTogether * squared) continue;
-            const double allowed = 0.5 * kTogether * std::sqrt(squared);
-            for (const VertexId w : {a, b, c, d}) limits.push_back({w, allowed});
+            const Pair pair{{a, b, c, d}, 2};
+            const double way = together(pair, length_);
+            if (boxes_near<2, 2>({mesh_.at(a), mesh_.at(b)}, {mesh_.at(c), mesh_.at(d)}, way / kTogether) &&
+                in_danger(way, squared_distance(mesh_, pair)))
+                found.push_back(pair);
         }
     }
 }
 
-std::vector<FacePairs::Item> PairLimits::boxes() const {
+std::vector<FacePairs::Item> DangerousPairs::boxes() const {
     const std::size_t faces = mesh_.mesh().faces.size();
     std::vector<FacePairs::Item> items(faces);
     parallel_for(faces, [&](std::size_t i) {
@@ -109,10 +139,46 @@ std::vector<FacePairs::Item> PairLimits::boxes() const {
     return items;
 }
 
+std::vector<Pair> dangerous_pairs(const EditMesh& mesh, const Lengths& length) {
+    const DangerousPairs dangerous(mesh, length);
+    const FacePairs faces(dangerous.boxes());
+    std::vector<std::vector<Pair>> found((faces.size() + kFacesPerBlock - 1) / kFacesPerBlock);
+    parallel_blocks(faces.size(), kFacesPerBlock, [&](std::size_t begin, std::size_t end) {
+        auto& block = found[begin / kFacesPerBlock];
+        faces.for_each(begin, end, [&](FaceId f, FaceId g) { dangerous.of_faces(f, g, block); });
+    });
+    std::vector<Pair> all;
+    for (const auto& block : found) all.insert(all.end(), block.begin(), block.end());
+    return all;
+}
+
+/// How far each vertex may go of its `length`.
+Lengths held_by(const std::vector<Pair>& pairs, const EditMesh& mesh, const Lengths& length) {
+    std::vector<double> squared(pairs.size());
+    parallel_for(pairs.size(), [&](std::size_t i) { squared[i] = squared_distance(mesh, pairs[i]); });
+    Lengths allowed = length;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (!in_danger(together(pairs[i], length), squared[i])) continue;
+        const double half = 0.5 * kTogether * std::sqrt(squared[i]);
+        for (const VertexId v : pairs[i].vertex) allowed[v] = std::min(allowed[v], half);
+    }
+    return allowed;
+}
+
 }  // namespace
 
-std::size_t limit_displacement(const EditMesh& mesh, double longest, IdVector<VertexId, Vec3>& displacement) {
-    IdVector<VertexId, double> length(displacement.size());
+bool MotionLimit::within_reach(const IdVector<VertexId, double>& length) const {
+    if (reach_.size() != length.size()) return false;
+    for (const VertexId v : length.ids())
+        if (length[v] > reach_[v]) return false;
+    return true;
+}
+
+std::size_t MotionLimit::apply(const EditMesh& mesh,
+                               double longest,
+                               const IdVector<VertexId, double>& later,
+                               IdVector<VertexId, Vec3>& displacement) {
+    Lengths length(displacement.size());
     std::vector<std::uint8_t> held(displacement.size(), 0);
     for (const VertexId v : displacement.ids()) {
         double d = norm(displacement[v]);
@@ -123,25 +189,23 @@ std::size_t limit_displacement(const EditMesh& mesh, double longest, IdVector<Ve
         }
         length[v] = d;
     }
-    const PairLimits limits_of(mesh, length);
-    const FacePairs pairs(limits_of.boxes());
-    std::vector<std::vector<Limit>> limits((pairs.size() + kFacesPerBlock - 1) / kFacesPerBlock);
-    parallel_blocks(pairs.size(), kFacesPerBlock, [&](std::size_t begin, std::size_t end) {
-        auto& block = limits[begin / kFacesPerBlock];
-        pairs.for_each(begin, end, [&](FaceId f, FaceId g) { limits_of.of_pair(f, g, block); });
-    });
-    IdVector<VertexId, double> allowed = length;
-    for (const auto& block : limits)
-        for (const Limit& limit : block) allowed[limit.vertex] = std::min(allowed[limit.vertex], limit.distance);
-    std::size_t count = 0;
+    if (!within_reach(length)) {
+        constexpr double kRounding = 1e-9;  // of places and lengths, far above it
+        reach_ = length;
+        for (const VertexId v : later.ids()) reach_[v] += later[v];
+        for (double& d : reach_) d *= 1.0 + 2.0 * kRounding;
+        pairs_ = dangerous_pairs(mesh, reach_);
+        for (double& d : reach_) d /= 1.0 + kRounding;
+    }
+    const Lengths allowed = held_by(pairs_, mesh, length);
     for (const VertexId v : displacement.ids()) {
         if (allowed[v] < length[v]) {
             displacement[v] *= allowed[v] / length[v];
             held[index(v)] = 1;
         }
-        count += held[index(v)];
+        reach_[v] -= allowed[v];
     }
-    return count;
+    return static_cast<std::size_t>(std::count(held.begin(), held.end(), 1));
 }
 
 }  // namespace lamella::mesh::detail
