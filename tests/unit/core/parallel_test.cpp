@@ -1,4 +1,5 @@
 #include "lamella/core/parallel.h"
+#include "lamella/core/parallel_sort.h"
 
 #include <gtest/gtest.h>
 
@@ -205,6 +206,18 @@ TEST(ParallelMax, FindsTheLargestWhereverItIs) {
     }
     EXPECT_EQ(parallel_max(0, 4.0, [](std::size_t) { return 9.0; }), 4.0);
     EXPECT_EQ(parallel_max(10, 4.0, [](std::size_t) { return 1.0; }), 4.0);
+}
+
+TEST(ParallelSort, SortsAsTheStandardLibraryDoes) {
+    const ThreadLimit two(2);
+    for (const std::size_t count : {0UL, 1UL, 2UL, 8191UL, 8192UL, 8193UL, 16384UL, 40000UL, 100001UL}) {
+        std::vector<std::pair<int, std::size_t>> items(count);
+        for (std::size_t i = 0; i < count; ++i) items[i] = {static_cast<int>(1e4 * std::sin(3.7 * static_cast<double>(i))), i};
+        auto expected = items;
+        std::sort(expected.begin(), expected.end());
+        parallel_sort(items);
+        EXPECT_EQ(items, expected) << count;
+    }
 }
 
 }  // namespace

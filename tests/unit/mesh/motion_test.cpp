@@ -67,10 +67,11 @@ TEST(FacePairs, AreThoseWhoseBoxesOverlap) {
     std::vector<FacePairs::Item> items;
     for (const FaceId f : mesh.mesh().faces.ids())  // a few of them huge
         items.push_back({f, mesh.box(f).inflated(index(f) % 50 == 0 ? 1.0 : 0.05)});
-    const FacePairs pairs(items);
+    using Pair = std::pair<FaceId, FaceId>;
+    const auto pairs = FacePairs(items).collect<Pair>(
+        [](FaceId f, FaceId g, std::vector<Pair>& all) { all.push_back({f, g}); });
     std::vector<std::vector<int>> found(items.size(), std::vector<int>(items.size(), 0));
-    pairs.for_each(0, 7, [&](FaceId f, FaceId g) { ++found[index(f)][index(g)]; });
-    pairs.for_each(7, pairs.size(), [&](FaceId f, FaceId g) { ++found[index(f)][index(g)]; });
+    for (const auto& [f, g] : pairs) ++found[index(f)][index(g)];
     std::size_t overlaps = 0;
     for (std::size_t i = 0; i < items.size(); ++i)
         for (std::size_t j = 0; j < items.size(); ++j) {

@@ -1,5 +1,7 @@
 #include "lamella/mesh/detail/face_pairs.h"
 
+#include "lamella/core/parallel_sort.h"
+
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -15,11 +17,12 @@ double width(const Box& box) {
 }
 
 struct Keyed {
-    std::uint64_t key;
-    std::uint32_t item;
+    std::uint64_t key = 0;
+    std::uint32_t item = 0;
     friend bool operator<(const Keyed& a, const Keyed& b) { return a.key != b.key ? a.key < b.key : a.item < b.item; }
 };
 
+constexpr std::uint64_t kWide = ~std::uint64_t{0};
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 float rounded_down(double x) { return std::nextafter(static_cast<float>(x), -kInfinity); }
@@ -38,6 +41,22 @@ double common_width(const std::vector<FacePairs::Item>& items) {
     return *place;
 }
 
+/// The items by the cells of their centers, those wider than `common` last.
+std::vector<Keyed> in_order(const std::vector<FacePairs::Item>& items, const Box& all, double common) {
+    // A little wider than the boxes: centers are rounded.
+    const double cell = std::max({1.0001 * common, width(all) / kMostCells, 1e-300});
+    std::vector<Keyed> order(items.size());
+    parallel_for(items.size(), [&](std::size_t i) {
+        const Box& box = items[i].box;
+        order[i] = {kWide, static_cast<std::uint32_t>(i)};
+        if (width(box) > common) return;
+        const Vec3 center = (0.5 / cell) * (box.low + box.high - 2.0 * all.low);
+        order[i].key = FacePairs::key(center);
+    });
+    parallel_sort(order);
+    return order;
+}
+
 }  // namespace
 
 FacePairs::FacePairs(const std::vector<Item>& items) {
@@ -48,36 +67,24 @@ FacePairs::FacePairs(const std::vector<Item>& items) {
         all.include(item.box.high);
     }
     const double common = common_width(items);
-    // A little wider than the boxes: centers are rounded.
-    const double cell = std::max({1.0001 * common, width(all) / kMostCells, 1e-300});
-    std::vector<Keyed> order;
-    order.reserve(items.size());
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        std::uint64_t key = ~std::uint64_t{0};
-        if (width(items[i].box) <= common) {
-            const Vec3 center = (0.5 / cell) * (items[i].box.low + items[i].box.high - 2.0 * all.low);
-            key = 0;
-            for (std::size_t k = 3; k-- > 0;) key = (key << kBits) + static_cast<std::uint64_t>(center[k]) + 1;
-            ++small_;
-        }
-        order.push_back({key, static_cast<std::uint32_t>(i)});
-    }
-    std::sort(order.begin(), order.end());
-    key_.reserve(items.size());
-    face_.reserve(items.size());
-    for (const Keyed& keyed : order) {
-        key_.push_back(keyed.key);
-        face_.push_back(items[keyed.item].face);
-    }
+    const std::vector<Keyed> order = in_order(items, all, common);
+    const auto first_wide = std::lower_bound(order.begin(), order.end(), Keyed{kWide, 0});
+    small_ = static_cast<std::size_t>(first_wide - order.begin());
+    key_.resize(items.size());
+    face_.resize(items.size());
     for (std::size_t k = 0; k < 3; ++k) {
         low_[k].assign(items.size() + Lanes::size(), kInfinity);
         high_[k].assign(items.size() + Lanes::size(), -kInfinity);
-        for (std::size_t i = 0; i < order.size(); ++i) {
-            const Box& box = items[order[i].item].box;
-            low_[k][i] = rounded_down(box.low[k] - all.low[k]);
-            high_[k][i] = rounded_up(box.high[k] - all.low[k]);
-        }
     }
+    parallel_for(items.size(), [&](std::size_t i) {
+        const Item& item = items[order[i].item];
+        key_[i] = order[i].key;
+        face_[i] = item.face;
+        for (std::size_t k = 0; k < 3; ++k) {
+            low_[k][i] = rounded_down(item.box.low[k] - all.low[k]);
+            high_[k][i] = rounded_up(item.box.high[k] - all.low[k]);
+        }
+    });
 }
 
 }  // namespace lamella::mesh::detail

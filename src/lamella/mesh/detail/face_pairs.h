@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lamella/core/host_device.h"
+#include "lamella/core/parallel.h"
 #include "lamella/mesh/detail/face_grid.h"
 
 #include <algorithm>
@@ -26,8 +27,30 @@ public:
     };
     explicit FacePairs(const std::vector<Item>& items);
 
+    /// The cell of a center, which is given in widths of a cell from the lowest corner of all boxes.
+    static std::uint64_t key(const Vec3& center) {
+        std::uint64_t key = 0;
+        for (std::size_t k = 3; k-- > 0;) key = (key << kBits) + static_cast<std::uint64_t>(center[k]) + 1;
+        return key;
+    }
+
     std::size_t size() const { return face_.size(); }
 
+    /// What visit(f, g, found) appends to `found` for each pair, f < g, in an order that depends on the boxes alone.
+    template <class Result, class Visit>
+    std::vector<Result> collect(Visit&& visit) const {
+        constexpr std::size_t kBlock = 256;
+        std::vector<std::vector<Result>> parts((size() + kBlock - 1) / kBlock);
+        parallel_blocks(size(), kBlock, [&](std::size_t begin, std::size_t end) {
+            auto& part = parts[begin / kBlock];
+            for_each(begin, end, [&](FaceId f, FaceId g) { visit(f, g, part); });
+        });
+        std::vector<Result> all;
+        for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+        return all;
+    }
+
+private:
     /// Calls found(f, g), f < g, for every overlapping pair whose first member in the sorted order is one of
     /// [begin, end): blocks that cover [0, size()) find every pair once.
     template <class Found>
@@ -49,7 +72,6 @@ public:
         }
     }
 
-private:
     struct Run {
         std::size_t begin, end;
     };

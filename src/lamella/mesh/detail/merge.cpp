@@ -73,18 +73,19 @@ std::vector<ClosePair> close_pairs(const Workbench& bench) {
     IdVector<FaceId, Pose> poses(mesh.mesh().faces.size());
     std::vector<FacePairs::Item> boxes;
     boxes.reserve(poses.size());
-    for (const FaceId f : poses.ids()) {
-        if (!mesh.alive(f)) continue;
+    for (const FaceId f : poses.ids())
+        if (mesh.alive(f)) boxes.push_back({f, {}});
+    parallel_for(boxes.size(), [&](std::size_t i) {
+        const FaceId f = boxes[i].face;
         poses[f] = pose(mesh, f);
-        boxes.push_back({f, mesh.box(f).inflated(0.5 * reach)});
-    }
-    const FacePairs near(boxes);
-    std::vector<ClosePair> pairs;
-    near.for_each(0, near.size(), [&](FaceId f, FaceId g) {
-        if (!face_each_other(mesh.face(f), poses[f], mesh.face(g), poses[g])) return;
-        const double squared = squared_gap(mesh, f, g);
-        if (squared < reach * reach) pairs.push_back({squared, f, g});
+        boxes[i].box = mesh.box(f).inflated(0.5 * reach);
     });
+    std::vector<ClosePair> pairs =
+        FacePairs(boxes).collect<ClosePair>([&](FaceId f, FaceId g, std::vector<ClosePair>& found) {
+            if (!face_each_other(mesh.face(f), poses[f], mesh.face(g), poses[g])) return;
+            const double squared = squared_gap(mesh, f, g);
+            if (squared < reach * reach) found.push_back({squared, f, g});
+        });
     std::sort(pairs.begin(), pairs.end(), [](const ClosePair& a, const ClosePair& b) {
         if (a.squared_distance != b.squared_distance) return a.squared_distance < b.squared_distance;
         return a.f != b.f ? a.f < b.f : a.g < b.g;

@@ -12,7 +12,6 @@ namespace lamella::mesh::detail {
 namespace {
 
 constexpr double kTogether = 0.9;
-constexpr std::size_t kFacesPerBlock = 256;
 
 /// Whether the boxes of two sets of points come closer than `reach` along every axis. It spares most exact distances: of
 /// the primitives of two faces whose boxes meet nine in ten are farther apart than they move.
@@ -141,15 +140,9 @@ std::vector<FacePairs::Item> DangerousPairs::boxes() const {
 
 std::vector<Pair> dangerous_pairs(const EditMesh& mesh, const Lengths& length) {
     const DangerousPairs dangerous(mesh, length);
-    const FacePairs faces(dangerous.boxes());
-    std::vector<std::vector<Pair>> found((faces.size() + kFacesPerBlock - 1) / kFacesPerBlock);
-    parallel_blocks(faces.size(), kFacesPerBlock, [&](std::size_t begin, std::size_t end) {
-        auto& block = found[begin / kFacesPerBlock];
-        faces.for_each(begin, end, [&](FaceId f, FaceId g) { dangerous.of_faces(f, g, block); });
+    return FacePairs(dangerous.boxes()).collect<Pair>([&](FaceId f, FaceId g, std::vector<Pair>& found) {
+        dangerous.of_faces(f, g, found);
     });
-    std::vector<Pair> all;
-    for (const auto& block : found) all.insert(all.end(), block.begin(), block.end());
-    return all;
 }
 
 /// How far each vertex may go of its `length`.
