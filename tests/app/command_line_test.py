@@ -41,7 +41,7 @@ class Misuse(ProgramTest):
             self.assert_refused(lamella(*arguments, cwd=self.folder))
 
     def test_of_things_that_come_later_says_so(self):
-        for command in ("render", "view"):
+        for command in ("view",):
             self.assert_refused(lamella(command, "foam", "--size", "10x10"), "later version")
 
     def test_of_a_device_that_is_not_there_says_so(self):
