@@ -226,7 +226,8 @@ void add_render_command(CLI::App& app, int& exit_code) {
     command->add_option("--field", picture.field, "Color films or balls by this field, with a legend")->type_name("NAME");
     command->add_option("--camera", options->camera, "Where it stands, in degrees, and how near; by default -62,16,1")->type_name("AZIMUTH,ELEVATION[,ZOOM]");
     command->add_option("--background", picture.background, "dark, light, transparent, environment, or a color")->type_name("NAME|#RRGGBB");
-    command->add_option("--environment", picture.environment, "Light: studio, daylight, gray, or a picture of light")->type_name("NAME|FILE.hdr|FILE.exr");
+    command->add_option("--environment", picture.environment, "Light: studio, window, daylight, gray, or a picture of light")->type_name("NAME|FILE.hdr|FILE.exr");
+    command->add_flag("--ground", picture.ground, "A polished table under everything");
     command->add_option("--thickness", options->thickness, "Of all films, e.g. \"350 nm\"; by default the frame's, or drained films")->type_name("LENGTH");
     command->add_option("--borders", picture.border_width, "Width of Plateau borders and wires, 1 as usual, 0 none")->type_name("F");
     command->add_option("--exposure", picture.exposure, "Multiplies all light; by default 1")->type_name("F");

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace lamella::render {
 namespace {
@@ -52,15 +53,8 @@ private:
     bool transparent_ = false, shows_environment_ = false;
 };
 
-/// Places within a pixel that fill it evenly, however many are taken: the R2 sequence, shifted for each pixel, and a tent of two
-/// pixels' width around the middle.
-Vec2 place_in_pixel(int sample, double shift_x, double shift_y) {
-    const auto tent = [](double u) { return u < 0.5 ? std::sqrt(2.0 * u) - 1.0 : 1.0 - std::sqrt(2.0 - 2.0 * u); };
-    const double x = shift_x + 0.7548776662466927 * sample, y = shift_y + 0.5698402909980532 * sample;
-    return {{0.5 + tent(x - std::floor(x)), 0.5 + tent(y - std::floor(y))}};
-}
-
 constexpr std::size_t kTile = 16;  // pixels along a side
+constexpr int kEmptySamples = 2;   // of a pixel that shows the background only
 
 /// Everything that a tile needs.
 struct Studio {
@@ -70,32 +64,94 @@ struct Studio {
     Backdrop backdrop;
     optics::FilmColorTable colors;
     Camera camera;
-    Vec3 camera_place;  ///< on the stage
+
+    std::optional<Rgb> behind(double x, double y) const {
+        return backdrop.color(x / static_cast<double>(options.width), y / static_cast<double>(options.height));
+    }
 };
 
-/// The light and opacity of one pixel. Where the first rays meet nothing, the others would not either.
-std::array<float, 4> pixel(const Studio& studio, detail::PathTracer& tracer, std::size_t x, std::size_t y) {
-    const PictureOptions& options = studio.options;
-    const RandomBits shift = random_bits(options.seed, RandomStream::kPicture, 0, y * options.width + x);
-    const double w = static_cast<double>(options.width), h = static_cast<double>(options.height);
-    constexpr int kProbes = 4;
-    Rgb light;
+/// Pixels x0 to x1 - 1 and y0 to y1 - 1.
+struct Tile {
+    std::size_t x0, y0, x1, y1;
+};
+
+/// Linear up to a knee, then an arc that reaches white only for infinite light: highlights keep their shape.
+Rgb shoulder(const Rgb& light) {
+    constexpr double kKnee = 0.55;
+    const double bright = optics::luminance(light);
+    if (bright <= kKnee) return light;
+    return (kKnee + (1.0 - kKnee) * (1.0 - std::exp(-(bright - kKnee) / (1.0 - kKnee)))) / bright * light;
+}
+
+/// Which pixels of a tile may show more than the background: those near a pixel that two rays find occupied. What is thinner
+/// than a third of a pixel and apart from all else can be missed.
+std::vector<std::uint8_t> occupied(const Studio& studio, const Tile& tile) {
+    const std::size_t across = tile.x1 - tile.x0 + 2, down = tile.y1 - tile.y0 + 2;
+    std::vector<std::uint8_t> found(across * down, 0);
+    const auto probe = [&](double x, double y) {
+        return studio.stage.rays->meets_anything(studio.camera.position(), studio.camera.direction(x, y));
+    };
+    for (std::size_t j = 0; j < down; ++j)
+        for (std::size_t i = 0; i < across; ++i) {
+            const double x = static_cast<double>(tile.x0 + i) - 1.0, y = static_cast<double>(tile.y0 + j) - 1.0;
+            found[j * across + i] = probe(x + 0.25, y + 0.3) || probe(x + 0.75, y + 0.7) ? 1 : 0;
+        }
+    std::vector<std::uint8_t> near((across - 2) * (down - 2), 0);
+    for (std::size_t j = 0; j < down - 2; ++j)
+        for (std::size_t i = 0; i < across - 2; ++i)
+            for (std::size_t k = 0; k < 9; ++k) near[j * (across - 2) + i] |= found[(j + k / 3) * across + i + k % 3];
+    return near;
+}
+
+/// A tent of two pixels' width around the middle of a pixel.
+double tent(double u) { return 0.5 + (u < 0.5 ? std::sqrt(2.0 * u) - 1.0 : 1.0 - std::sqrt(2.0 - 2.0 * u)); }
+
+/// The mean of what the samples of a pixel saw.
+void write_pixel(const Studio& studio, std::span<const detail::Seen> seen, std::size_t x, std::size_t y, Picture* picture) {
+    Rgb light, shown;
     double alpha = 0.0;
-    int taken = 0, empty = 0;
-    while (taken < options.samples && !(taken == kProbes && empty == kProbes)) {
-        detail::SampleNumbers numbers(shift.half(1) + 0x632BE59BD9B4E019U * static_cast<std::uint64_t>(taken));
-        const Vec2 inside = place_in_pixel(taken, uniform01(shift), static_cast<double>(shift.word[0] >> 8) * 0x1.0p-24);
-        const double px = static_cast<double>(x) + inside[0], py = static_cast<double>(y) + inside[1];
-        const std::optional<Rgb> behind = studio.backdrop.color(px / w, py / h);
-        const detail::Seen seen = tracer.look(studio.camera_place, studio.camera.direction(px, py), behind, numbers);
-        light += seen.light;
-        alpha += seen.alpha;
-        empty += seen.empty ? 1 : 0;
-        ++taken;
+    for (const detail::Seen& s : seen) {
+        light += studio.options.exposure * s.light;
+        shown += shoulder(studio.options.exposure * s.light);
+        alpha += s.alpha;
     }
-    light = options.exposure / taken * light;
-    return {static_cast<float>(light[0]), static_cast<float>(light[1]), static_cast<float>(light[2]),
-            static_cast<float>(studio.backdrop.transparent() ? alpha / taken : 1.0)};
+    const auto count = static_cast<double>(seen.size());
+    float* linear = picture->light.pixel(x, y);
+    float* screen = picture->shown.pixel(x, y);
+    for (std::size_t k = 0; k < 3; ++k) {
+        linear[k] = static_cast<float>(light[k] / count);
+        screen[k] = static_cast<float>(shown[k] / count);
+    }
+    linear[3] = screen[3] = static_cast<float>(studio.backdrop.transparent() ? alpha / count : 1.0);
+}
+
+/// Draws some rows of a tile after the other, so that many rays are on their way together.
+void draw_tile(const Studio& studio, const Tile& tile, Picture* picture) {
+    const PictureOptions& options = studio.options;
+    const bool everywhere = studio.stage.ground.has_value();
+    const std::vector<std::uint8_t> busy = everywhere ? std::vector<std::uint8_t>() : occupied(studio, tile);
+    detail::PathTracer tracer(studio.stage, studio.environment, studio.colors);
+    std::vector<detail::CameraRay> rays;
+    std::vector<detail::Seen> seen;
+    std::vector<std::size_t> ends;  // of the rays of each pixel of a row
+    for (std::size_t y = tile.y0; y < tile.y1; ++y) {
+        rays.clear();
+        ends.clear();
+        for (std::size_t x = tile.x0; x < tile.x1; ++x) {
+            const bool empty = !everywhere && busy[(y - tile.y0) * (tile.x1 - tile.x0) + x - tile.x0] == 0;
+            const RandomBits bits = random_bits(options.seed, RandomStream::kPicture, 0, y * options.width + x);
+            for (int s = 0; s < (empty ? std::min(kEmptySamples, options.samples) : options.samples); ++s) {
+                const detail::SampleNumbers numbers(bits, s);
+                const Vec2 place = numbers.place();
+                const double px = static_cast<double>(x) + tent(place[0]), py = static_cast<double>(y) + tent(place[1]);
+                rays.push_back({studio.camera.direction(px, py), studio.behind(px, py), numbers});
+            }
+            ends.push_back(rays.size());
+        }
+        tracer.look(studio.camera.position(), rays, &seen);
+        for (std::size_t x = tile.x0, begin = 0; x < tile.x1; begin = ends[x - tile.x0], ++x)
+            write_pixel(studio, std::span(seen).subspan(begin, ends[x - tile.x0] - begin), x, y, picture);
+    }
 }
 
 void check(const PictureOptions& options) {
@@ -123,43 +179,37 @@ Picture render_frame(const sim::Frame& frame, const PictureOptions& options, con
     Backdrop backdrop(options.background);
     Environment environment(options.environment);
     detail::Stage stage = detail::make_stage(frame, options);
-    const Bounds unit{{}, 1.0};
-    const Camera camera(options.view, unit, options.width, options.height);
+    if (stage.ground) {
+        const std::optional<Rgb> behind = backdrop.color(0.5, 0.8);
+        stage.ground->color = behind ? *behind : environment.light({{0.0, 0.0, -1.0}});
+    }
     const Studio studio{options, std::move(stage), std::move(environment), std::move(backdrop),
-                        optics::FilmColorTable({}, {.thicknesses = 801, .cosines = 65}), camera, camera.position()};
+                        optics::FilmColorTable({}, {.thicknesses = 801, .cosines = 65}),
+                        Camera(options.view, {{}, 1.0}, options.width, options.height)};
 
-    Picture picture{{options.width, options.height, 4, {}}, studio.stage.scale};
-    picture.light.values.resize(4 * options.width * options.height);
+    Picture picture{{options.width, options.height, 4, std::vector<float>(4 * options.width * options.height)}, {}, studio.stage.scale};
+    picture.shown = picture.light;
     const std::size_t across = (options.width + kTile - 1) / kTile, tiles = across * ((options.height + kTile - 1) / kTile);
     const std::size_t batch = std::max<std::size_t>(48, 12 * static_cast<std::size_t>(thread_count()));
     for (std::size_t first = 0; first < tiles; first += batch) {
         parallel_blocks(std::min(batch, tiles - first), 1, [&](std::size_t k, std::size_t) {
-            detail::PathTracer tracer(studio.stage, studio.environment, studio.colors);
-            const std::size_t x0 = (first + k) % across * kTile, y0 = (first + k) / across * kTile;
-            for (std::size_t y = y0; y < std::min(y0 + kTile, options.height); ++y)
-                for (std::size_t x = x0; x < std::min(x0 + kTile, options.width); ++x)
-                    std::ranges::copy(pixel(studio, tracer, x, y), picture.light.pixel(x, y));
+            const std::size_t x = (first + k) % across * kTile, y = (first + k) / across * kTile;
+            draw_tile(studio, {x, y, std::min(x + kTile, options.width), std::min(y + kTile, options.height)}, &picture);
         });
         if (progress) progress(static_cast<double>(std::min(tiles, first + batch)) / static_cast<double>(tiles));
     }
     return picture;
 }
 
-Canvas develop(const Picture& picture, double exposure) {
-    // Linear up to a knee, then an arc that reaches white only for infinite light: highlights keep their shape.
-    const auto shoulder = [](double y) {
-        constexpr double kKnee = 0.55;
-        return y <= kKnee ? y : kKnee + (1.0 - kKnee) * (1.0 - std::exp(-(y - kKnee) / (1.0 - kKnee)));
-    };
-    Canvas canvas(picture.light.width, picture.light.height, {0, 0, 0, 0});
+Canvas develop(const Picture& picture) {
+    Canvas canvas(picture.shown.width, picture.shown.height, {0, 0, 0, 0});
     for (std::size_t y = 0; y < canvas.height(); ++y)
         for (std::size_t x = 0; x < canvas.width(); ++x) {
-            const float* p = picture.light.pixel(x, y);
+            const float* p = picture.shown.pixel(x, y);
             const double alpha = static_cast<double>(p[3]);
             Rgb color;
-            for (std::size_t k = 0; k < 3; ++k) color[k] = alpha > 1e-4 ? exposure * static_cast<double>(p[k]) / alpha : 0.0;
-            const double bright = optics::luminance(color);
-            const Rgb shown = optics::desaturate(bright > 0.0 ? shoulder(bright) / bright * color : Rgb{});
+            for (std::size_t k = 0; k < 3; ++k) color[k] = alpha > 1e-4 ? static_cast<double>(p[k]) / alpha : 0.0;
+            const Rgb shown = optics::desaturate(color);
             ScreenColor& out = canvas.at(x, y);
             for (std::size_t k = 0; k < 3; ++k) out[k] = static_cast<float>(optics::encode_srgb(shown[k]));
             out[3] = static_cast<float>(alpha);

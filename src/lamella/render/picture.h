@@ -19,6 +19,7 @@ struct PictureOptions {
     int samples = 16;                      ///< per pixel
     View view;
     std::string environment = "studio";    ///< see Environment
+    bool ground = false;                   ///< a polished table just below everything
     std::string background = "dark";       ///< dark, light, transparent, environment, or a color "#1a2b3c"
     std::string field;                     ///< colors films and balls; empty: as light does
     double thickness = 0.0;                ///< of all films [m]; 0: the frame's, or a drained film where it has none
@@ -32,15 +33,18 @@ struct PictureOptions {
 /// A picture before it is developed for a screen.
 struct Picture {
     io::LightImage light;             ///< linear, RGB and premultiplied alpha
+    io::LightImage shown;             ///< the same with highlights compressed before the samples of a pixel were averaged, as
+                                      ///< edges of bright lamps would be jagged otherwise
     std::optional<ColorScale> scale;  ///< where a field colors it
 };
 
 /// Follows rays of light through the films of a frame.
 ///
 /// A ray that meets a film goes on behind it, weakened by 1 - C, and its mirror image is weighted with C, the film's color
-/// for its thickness and angle (optics/film_color_table.h). Rays from the camera follow both branches of the first two films;
-/// further mirror images are drawn by lot. Plateau borders bend light as threads of water do. Same options and frame, same
-/// bits on any number of threads.
+/// for its thickness and angle (optics/film_color_table.h). Both are followed at the first films; images of images are drawn
+/// by lot. Plateau borders bend light as threads of water do; wires are brushed metal, balls matte with a gloss. Films of
+/// which no thickness is known get an assumed one (detail/assumed_thickness.h). Same options and frame, same bits on any
+/// number of threads.
 ///
 /// @param progress  told the fraction done now and then, on the calling thread; may throw to stop
 /// @throws InputError  the frame shows nothing, there is no such field, built without Embree
@@ -48,8 +52,8 @@ Picture render_frame(const sim::Frame& frame,
                      const PictureOptions& options,
                      const std::function<void(double)>& progress = {});
 
-/// The picture for a screen: exposure, a soft shoulder for highlights, colors beyond sRGB desaturated, and the legend.
-Canvas develop(const Picture& picture, double exposure = 1.0);
+/// The picture for a screen: highlights compressed, colors beyond sRGB desaturated, and the legend.
+Canvas develop(const Picture& picture);
 
 /// Whether this program can make pictures (it was built with Embree).
 bool can_render();

@@ -10,7 +10,8 @@ namespace {
 using optics::Rgb;
 
 constexpr double kWater = 1.333;
-constexpr Rgb kSteel{{0.56, 0.57, 0.60}};
+constexpr Rgb kWhite{{1.0, 1.0, 1.0}};
+constexpr Rgb kSteel{{0.33, 0.34, 0.36}};
 
 Rgb times(const Rgb& a, const Rgb& b) { return {{a[0] * b[0], a[1] * b[1], a[2] * b[2]}}; }
 
@@ -52,88 +53,132 @@ Rgb field_film_light(const Rgb& color, const Vec3& normal, const Vec3& direction
 
 }  // namespace
 
-Seen PathTracer::look(const Vec3& origin, const Vec3& direction, const std::optional<Rgb>& background, SampleNumbers& numbers) {
-    Seen seen;
-    seen.light = follow({origin, direction, 0, true}, background, numbers, &seen);
-    return seen;
+void PathTracer::look(const Vec3& origin, std::vector<CameraRay>& rays, std::vector<Seen>* seen) {
+    seen->assign(rays.size(), {});
+    rays_.clear();
+    paths_.clear();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        rays_.push_back({origin, rays[i].direction});
+        paths_.push_back({kWhite, static_cast<std::uint32_t>(i), 0, rays[i].background ? Behind::kBackground : Behind::kEnvironment});
+    }
+    for (int depth = 0; !rays_.empty(); ++depth) {
+        next_rays_.clear();
+        next_paths_.clear();
+        stage_.rays->trace(rays_, depth == 0 ? Bundle::kAlike : Bundle::kMixed, &meetings_);
+        for (std::size_t i = 0; i < rays_.size(); ++i) {
+            const std::uint32_t from = paths_[i].camera_ray;
+            shade({rays_[i], paths_[i], meetings_[i], rays[from], (*seen)[from]});
+        }
+        rays_.swap(next_rays_);
+        paths_.swap(next_paths_);
+    }
 }
 
-Rgb PathTracer::follow(const Ray& ray, const std::optional<Rgb>& background, SampleNumbers& numbers, Seen* seen) {
-    std::vector<FilmCrossing>& crossings = crossings_[static_cast<std::size_t>(ray.depth)];
-    const ThingHit hit = stage_.rays->trace(ray.origin, ray.direction, &crossings);
-    Rgb light, passed{{1.0, 1.0, 1.0}};
-    std::vector<Mirror> mirrors;
-    mirrors.reserve(crossings.size());
-    for (const FilmCrossing& crossing : crossings) {
+void PathTracer::send(const Shot& from, const RayStart& ray, const Rgb& weight, Behind behind) {
+    if (from.path.depth >= kDeepest) return;
+    next_rays_.push_back(ray);
+    next_paths_.push_back({weight, from.path.camera_ray, from.path.depth + 1, behind});
+}
+
+/// What a ray that is no longer the camera's sees where it meets nothing.
+Rgb PathTracer::far_light(const Vec3& direction) const {
+    return stage_.ground && direction[2] < 0.0 ? stage_.ground->color : environment_.light(direction);
+}
+
+void PathTracer::shade(const Shot& shot) {
+    if (stage_.ground) meet_ground(shot);
+    const Rgb passed = cross_films(shot);
+    const Rgb weight = times(shot.path.weight, passed);
+    if (shot.path.depth == 0) shot.seen.alpha = 1.0 - optics::luminance(passed);
+    if (shot.meeting.thing.thing != Thing::kNothing) return show_thing(shot, weight);
+    if (shot.path.behind == Behind::kBackground) shot.seen.light += times(weight, *shot.from.background);
+    else if (shot.path.behind == Behind::kEnvironment) shot.seen.light += times(weight, far_light(shot.ray.direction));
+}
+
+/// Lets a ray that goes down end at the ground, unless something else is nearer.
+void PathTracer::meet_ground(const Shot& shot) const {
+    if (shot.ray.direction[2] >= 0.0) return;
+    const auto distance = static_cast<float>((stage_.ground->height - shot.ray.origin[2]) / shot.ray.direction[2]);
+    ThingHit& hit = shot.meeting.thing;
+    if (distance <= 0.0F || (hit.thing != Thing::kNothing && distance > hit.distance)) return;
+    hit = {Thing::kGround, distance, 0, {{0.0, 0.0, 1.0}}};
+    std::erase_if(shot.meeting.films, [&](const FilmCrossing& c) { return c.distance >= distance; });
+}
+
+/// Adds what the films along a ray show; returns how much of what is behind them comes through.
+Rgb PathTracer::cross_films(const Shot& shot) {
+    Rgb passed = kWhite;
+    std::size_t number = 0;
+    for (const FilmCrossing& crossing : shot.meeting.films) {
         const FilmPoint point = film_point(stage_.films, crossing);
         if (stage_.films_show_field) {
-            light += kFieldOpacity * times(passed, field_film_light(stage_.scale->color(point.value), point.normal, ray.direction));
+            const Rgb shown = field_film_light(stage_.scale->color(point.value), point.normal, shot.ray.direction);
+            shot.seen.light += kFieldOpacity * times(times(shot.path.weight, passed), shown);
             passed = (1.0 - kFieldOpacity) * passed;
             continue;
         }
-        const Rgb reflected = colors_.reflected(point.value, std::abs(dot(point.normal, ray.direction)));
-        mirrors.push_back({ray.origin + static_cast<double>(crossing.distance) * ray.direction,
-                           mirror(ray.direction, point.normal), times(passed, reflected)});
-        passed = times(passed, Rgb{{1.0, 1.0, 1.0}} - reflected);
+        const Rgb reflected = colors_.reflected(point.value, std::abs(dot(point.normal, shot.ray.direction)));
+        show_film(shot, crossing, number++, passed, reflected, point.normal);
+        passed = times(passed, kWhite - reflected);
     }
-    if (hit.thing != Thing::kNothing) light += times(passed, things_light(ray, hit, numbers));
-    else if (!background || !ray.straight) light += times(passed, environment_.light(ray.direction));
-    else light += times(passed, *background);
-    if (seen != nullptr) {
-        seen->empty = hit.thing == Thing::kNothing && crossings.empty();
-        seen->alpha = hit.thing == Thing::kNothing ? 1.0 - optics::luminance(passed) : 1.0;
-    }
-    return light + mirrored_light(ray, mirrors, numbers);
+    return passed;
 }
 
-/// The mirror images in the films along a ray: those of the first two that the camera sees are followed, one of the others is
-/// drawn by its brightness.
-Rgb PathTracer::mirrored_light(const Ray& ray, const std::vector<Mirror>& mirrors, SampleNumbers& numbers) {
-    if (ray.depth >= kDeepest) return {};
-    Rgb light;
-    const auto follow_mirror = [&](const Mirror& m) {
-        return follow({m.place, m.direction, ray.depth + 1, false}, std::nullopt, numbers, nullptr);
-    };
-    const std::size_t followed = ray.depth == 0 ? std::min<std::size_t>(2, mirrors.size()) : 0;
-    for (std::size_t i = 0; i < followed; ++i) light += times(mirrors[i].weight, follow_mirror(mirrors[i]));
-    const auto brightness = [](const Mirror& m) { return std::abs(m.weight[0]) + std::abs(m.weight[1]) + std::abs(m.weight[2]); };
-    double sum = 0.0;
-    for (std::size_t i = followed; i < mirrors.size(); ++i) sum += brightness(mirrors[i]);
-    // Rays of mirror images are worth a tenth of their elders and are drawn less often; what is drawn counts for the rest.
-    const double survival = ray.depth == 0 ? 1.0 : std::min(1.0, 1.5 * sum);
-    double draw = numbers.next();
-    if (sum == 0.0 || draw >= survival) return light;
-    draw *= sum / survival;
-    for (std::size_t i = followed; i < mirrors.size(); ++i) {
-        const double own = brightness(mirrors[i]);
-        draw -= own;
-        if (draw < 0.0 || i + 1 == mirrors.size()) return light + sum / (own * survival) * times(mirrors[i].weight, follow_mirror(mirrors[i]));
+/// E, and by lot a ray for L - E. A lot of the camera's first films comes from numbers that are even over the samples.
+void PathTracer::show_film(const Shot& shot, const FilmCrossing& crossing, std::size_t number, const Rgb& passed, const Rgb& reflected, const Vec3& normal) {
+    const Rgb own = times(passed, reflected), weight = times(shot.path.weight, own);
+    const Vec3 image = mirror(shot.ray.direction, normal);
+    const Rgb far = far_light(image);
+    shot.seen.light += times(weight, far);
+    const bool first = shot.path.depth == 0;
+    const double brightness = (std::abs(own[0]) + std::abs(own[1]) + std::abs(own[2])) / 3.0;
+    // Measured on double bubbles: noise falls with more rays, but not as fast as the time grows.
+    constexpr double kEagerFirst = 6.0, kEagerLater = 2.0;
+    const double chance = std::min(1.0, (first ? kEagerFirst : kEagerLater) * brightness);
+    const double lot = first && number < 2 ? shot.from.numbers.lot(number) : shot.from.numbers.next();
+    if (lot >= chance || shot.path.depth >= kDeepest) return;
+    shot.seen.light -= 1.0 / chance * times(weight, far);
+    const Vec3 place = shot.ray.origin + static_cast<double>(crossing.distance) * shot.ray.direction;
+    send(shot, {place, image}, 1.0 / chance * weight, Behind::kEnvironment);
+}
+
+void PathTracer::show_thing(const Shot& shot, const Rgb& weight) {
+    const ThingHit& hit = shot.meeting.thing;
+    if (hit.thing == Thing::kGround) return show_ground(shot, weight);
+    if (shot.path.depth == 0) shot.seen.alpha = 1.0;
+    if (hit.thing == Thing::kBorder) return show_border(shot, weight);
+    const Vec3 place = shot.ray.origin + static_cast<double>(hit.distance) * shot.ray.direction;
+    const Vec3 image = mirror(shot.ray.direction, hit.normal);
+    if (hit.thing == Thing::kWire) {  // brushed: it shows what lies around the mirror image's direction
+        const Rgb around = environment_.matte(image) / environment_.brightest_matte();
+        shot.seen.light += times(weight, times(kSteel, around) + 0.02 * far_light(image));
+        return;
     }
-    return light;
+    const double cosine = std::clamp(-dot(shot.ray.direction, hit.normal), 0.0, 1.0);
+    const Rgb color = times(stage_.ball_color[hit.number], matte_light(shot, place, hit.normal));
+    shot.seen.light += times(weight, color + 0.5 * water_reflectance(cosine) * far_light(image));
 }
 
-Rgb PathTracer::things_light(const Ray& ray, const ThingHit& hit, SampleNumbers& numbers) {
-    if (hit.thing == Thing::kBorder) return border_light(ray, hit, numbers);
-    const Vec3 place = ray.origin + static_cast<double>(hit.distance) * ray.direction;
-    const Vec3 shown = environment_.light(mirror(ray.direction, hit.normal));
-    const double cosine = std::clamp(-dot(ray.direction, hit.normal), 0.0, 1.0);
-    if (hit.thing == Thing::kWire) return 0.7 * times(kSteel, shown) + matte_light(place, hit.normal, 0.2 * kSteel, numbers);
-    return matte_light(place, hit.normal, stage_.ball_color[hit.number], numbers) + 0.7 * water_reflectance(cosine) * shown;
-}
-
-/// Light that a matte surface throws back: one lamp is drawn, and seen or not.
-Rgb PathTracer::matte_light(const Vec3& place, const Vec3& normal, const Rgb& color, SampleNumbers& numbers) const {
-    const double a = numbers.next();
-    const LightSample lamp = environment_.sample(a, numbers.next());
+/// Light that white matte paper throws back, so that it is at most white: lamps that are right for films, which reflect four
+/// percent, would burn paper out. What is in the way of the light is found by drawing one lamp.
+Rgb PathTracer::matte_light(const Shot& shot, const Vec3& place, const Vec3& normal) const {
+    const bool first = shot.path.depth == 0;
+    SampleNumbers& numbers = shot.from.numbers;
+    const double a = first ? numbers.lot(2) : numbers.next(), b = first ? numbers.lot(3) : numbers.next();
+    const LightSample lamp = environment_.sample(a, b);
     const double cosine = dot(normal, lamp.direction);
-    if (cosine <= 0.0 || stage_.rays->blocked(place + 1e-4 * normal, lamp.direction)) return {};
-    return cosine / (std::numbers::pi * lamp.density) * times(color, lamp.light);
+    Rgb light = environment_.matte(normal);
+    if (cosine > 0.0 && stage_.rays->blocked(place + 1e-4 * normal, lamp.direction))
+        light -= cosine / (std::numbers::pi * lamp.density) * lamp.light;
+    return light / environment_.brightest_matte();
 }
 
 /// A Plateau border as a round thread of water: light is bent into it and out again, as in an endless cylinder, whose far side
 /// lies where the chord ends. The mirror image on its surface is taken from the environment.
-Rgb PathTracer::border_light(const Ray& ray, const ThingHit& hit, SampleNumbers& numbers) {
+void PathTracer::show_border(const Shot& shot, const Rgb& weight) {
     const RayGeometry& geometry = stage_.rays->geometry();
+    const ThingHit& hit = shot.meeting.thing;
+    const Vec3& direction = shot.ray.direction;
     const auto& a = geometry.thread_points[geometry.thread_segments[hit.number]];
     const auto& b = geometry.thread_points[geometry.thread_segments[hit.number] + 1];
     Vec3 axis;
@@ -141,23 +186,45 @@ Rgb PathTracer::border_light(const Ray& ray, const ThingHit& hit, SampleNumbers&
     axis *= 1.0 / std::max(norm(axis), 1e-12);
     Vec3 normal = hit.normal - dot(hit.normal, axis) * axis;
     normal *= 1.0 / std::max(norm(normal), 1e-12);
-    const double cosine = -dot(ray.direction, normal);
-    const Rgb shown = environment_.light(mirror(ray.direction, hit.normal));
-    if (cosine <= 1e-3 || ray.depth >= kDeepest) return shown;
-    const double reflected = water_reflectance(cosine);
+    const double cosine = -dot(direction, normal);
+    const double reflected = cosine > 1e-3 ? water_reflectance(cosine) : 1.0;
+    shot.seen.light += reflected * times(weight, far_light(mirror(direction, hit.normal)));
+    if (reflected == 1.0) return;
     const double inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (kWater * kWater));
-    const Vec3 bent = ray.direction / kWater + (cosine / kWater - inside) * normal;
+    const Vec3 bent = direction / kWater + (cosine / kWater - inside) * normal;
     const Vec3 across = bent - dot(bent, axis) * axis;
-    const double chord = 2.0 * static_cast<double>(a[3]) * -dot(bent, normal) / std::max(squared_norm(across), 1e-9);
-    const Vec3 place = ray.origin + static_cast<double>(hit.distance) * ray.direction + chord * bent;
+    const double radius = static_cast<double>(a[3]);
+    const double chord = 2.0 * radius * -dot(bent, normal) / std::max(squared_norm(across), 1e-9);
     // By symmetry the ray leaves as it came in: turned by the same angle about the far side's normal.
-    Vec3 far = normal + chord / static_cast<double>(a[3]) * across;
+    Vec3 far = normal + chord / radius * across;
     far *= 1.0 / std::max(norm(far), 1e-12);
     const double out = std::sqrt(std::max(0.0, 1.0 - kWater * kWater * (1.0 - inside * inside)));
     Vec3 leaving = kWater * bent + (out - kWater * inside) * far;
     leaving *= 1.0 / std::max(norm(leaving), 1e-12);
-    const Rgb through = follow({place + 1e-4 * far, leaving, ray.depth + 1, false}, std::nullopt, numbers, nullptr);
-    return reflected * shown + (1.0 - reflected) * (1.0 - reflected) * through;
+    const Vec3 place = shot.ray.origin + static_cast<double>(hit.distance) * direction + chord * bent + 1e-4 * far;
+    send(shot, {place, leaving}, (1.0 - reflected) * (1.0 - reflected) * weight, Behind::kEnvironment);
+}
+
+/// A polished table without an edge: it has the background's color where nothing shades it, and mirrors what stands on it
+/// (not the lamps, whose images would draw the table's outline), less and less with the distance.
+void PathTracer::show_ground(const Shot& shot, const Rgb& weight) {
+    const Vec3 up{{0.0, 0.0, 1.0}};
+    const Vec3& direction = shot.ray.direction;
+    const Vec3 place = shot.ray.origin + static_cast<double>(shot.meeting.thing.distance) * direction;
+    const double away = place[0] * place[0] + place[1] * place[1];
+    constexpr double kShaded = 25.0;  // shadows end five radii away
+    double open = 1.0;
+    if (away < kShaded)
+        open = std::clamp(optics::luminance(matte_light(shot, place, up)) / optics::luminance(environment_.matte(up)) *
+                          environment_.brightest_matte(), 0.0, 1.0);
+    if (shot.path.depth == 0) shot.seen.alpha = 1.0 - open * (1.0 - shot.seen.alpha);
+    const bool backdrop = shot.path.behind == Behind::kBackground;
+    const Rgb color = backdrop ? *shot.from.background : shot.path.behind == Behind::kNothing ? Rgb{} : stage_.ground->color;
+    shot.seen.light += open * times(weight, color);
+    if (shot.path.depth > 1) return;
+    const double fresnel = 0.05 + 0.95 * std::pow(std::clamp(1.0 + direction[2], 0.0, 1.0), 5.0);
+    const double image = fresnel * std::exp(-0.25 * away);
+    if (image > 1e-3) send(shot, {place + 1e-4 * up, mirror(direction, up)}, image * weight, Behind::kNothing);
 }
 
 }  // namespace lamella::render::detail

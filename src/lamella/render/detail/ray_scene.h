@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace lamella::render::detail {
@@ -26,7 +27,7 @@ struct FilmCrossing {
     float u, v;  ///< weights of its second and third corner
 };
 
-enum class Thing : std::uint8_t { kNothing, kBorder, kWire, kBall };
+enum class Thing : std::uint8_t { kNothing, kBorder, kWire, kBall, kGround };
 
 /// The first thing along a ray that is no film.
 struct ThingHit {
@@ -35,6 +36,20 @@ struct ThingHit {
     std::uint32_t number = 0;  ///< of the segment or ball
     Vec3 normal;               ///< unit, outward
 };
+
+struct RayStart {
+    Vec3 origin, direction;  ///< unit direction
+};
+
+/// What a ray meets: the first thing, and the films before it, sorted by distance. A film met at the edge between two of its
+/// triangles counts once.
+struct RayMeeting {
+    ThingHit thing;
+    std::vector<FilmCrossing> films;
+};
+
+/// How much the rays that are traced together resemble each other; for speed only.
+enum class Bundle : std::uint8_t { kAlike, kMixed };
 
 /// The rays of Embree; this is the only file that knows it.
 class RayScene {
@@ -45,12 +60,14 @@ public:
     RayScene(const RayScene&) = delete;
     RayScene& operator=(const RayScene&) = delete;
 
-    /// The first thing along the ray, and the films before it, sorted by distance. A film met at the edge between two of its
-    /// triangles counts once.
-    ThingHit trace(const Vec3& origin, const Vec3& direction, std::vector<FilmCrossing>* films) const;
+    /// Traces any number of rays.
+    void trace(std::span<const RayStart> rays, Bundle bundle, std::vector<RayMeeting>* meetings) const;
 
     /// Whether an opaque thing (a wire, a ball) is in the way.
     bool blocked(const Vec3& origin, const Vec3& direction) const;
+
+    /// Whether the ray meets anything at all.
+    bool meets_anything(const Vec3& origin, const Vec3& direction) const;
 
     const RayGeometry& geometry() const { return geometry_; }
 

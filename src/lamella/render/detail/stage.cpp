@@ -184,6 +184,14 @@ void refine_thickness(const sim::Frame& frame, const FilmPatches& patches, const
     });
 }
 
+double lowest_point(const detail::RayGeometry& geometry) {
+    float lowest = 1.0F;
+    for (const auto& p : geometry.film_position) lowest = std::min(lowest, p[2]);
+    for (const auto& p : geometry.thread_points) lowest = std::min(lowest, p[2] - p[3]);
+    for (const auto& p : geometry.balls) lowest = std::min(lowest, p[2] - p[3]);
+    return static_cast<double>(lowest);
+}
+
 }  // namespace
 
 ColorScale field_scale(const sim::Frame& frame, const std::string& name) {
@@ -210,6 +218,7 @@ detail::Stage detail::make_stage(const sim::Frame& frame, const PictureOptions& 
         add_threads(patches, pieces, options.border_width, &geometry);
     }
     add_balls(frame, options, &stage, &geometry);
+    if (options.ground) stage.ground = Ground{lowest_point(geometry) - 0.004, {}};
     if (!options.field.empty() && !stage.scale) field_scale(frame, options.field);  // says what fields there are
     stage.rays = std::make_unique<RayScene>(std::move(geometry));
     return stage;

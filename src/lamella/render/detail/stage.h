@@ -6,9 +6,16 @@
 #include "lamella/render/picture.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace lamella::render::detail {
+
+/// A table under everything.
+struct Ground {
+    double height = -1.0;
+    optics::Rgb color;  ///< as it is seen in mirror images
+};
 
 /// Everything that rays need to know of a frame, moved and scaled so that it fills the unit ball around the origin.
 struct Stage {
@@ -17,6 +24,7 @@ struct Stage {
     bool films_show_field = false;
     std::vector<optics::Rgb> ball_color;
     std::optional<ColorScale> scale;      ///< where a field colors things
+    std::optional<Ground> ground;
     std::unique_ptr<RayScene> rays;
 };
 
