@@ -1,26 +1,25 @@
+#include "lamella/core/build_info.h"
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/core/units.h"
 #include "lamella/io/atomic_file.h"
-#include "lamella/io/mesh_files.h"
 #include "lamella/render/picture.h"
-#include "lamella/sim/film_surface.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "command_line.h"
 #include "commands.h"
 #include "external_program.h"
-#include "frame_source.h"
+#include "picture_source.h"
 #include "progress_display.h"
 #include "signals.h"
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 namespace lamella::app {
@@ -41,38 +40,6 @@ struct RenderOptions {
     int threads = 0;
     std::string progress;
     render::PictureOptions picture;
-};
-
-/// The frames of a run, or the one that a file holds.
-class Frames {
-public:
-    explicit Frames(const std::string& source) {
-        const fs::path path(source);
-        if (fs::is_directory(path)) run_.emplace(path);
-        else if (!fs::exists(path)) throw InputError(fmt::format("{}: there is no such run folder or file", source));
-        else if (path.extension() == ".vtp") single_ = io::read_vtp(path);
-        else if (io::is_film_file(path)) single_.surface = sim::film_surface(io::read_films(path).mesh);
-        else throw InputError(fmt::format("{}: a run folder, or a .vtp, .ply, .obj or .fe file is expected", source));
-    }
-
-    /// @param text  a number, last or all
-    std::vector<std::size_t> chosen(const std::string& text) const {
-        if (!run_) {
-            if (text != "last" && text != "all" && text != "0") throw InputError(fmt::format("a file has frame 0 only, no {}", text));
-            return {0};
-        }
-        if (text != "all") return {run_->frame_index(text)};
-        std::vector<std::size_t> all(run_->frames().size());
-        for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-        if (all.empty()) throw InputError(fmt::format("{} has no frames", run_->folder().string()));
-        return all;
-    }
-    sim::Frame frame(std::size_t index) const { return run_ ? run_->frame(index) : single_; }
-    fs::path default_folder() const { return run_ ? run_->folder() / "pictures" : fs::path("."); }
-
-private:
-    std::optional<RunReader> run_;
-    sim::Frame single_;
 };
 
 double number(std::string_view text, const std::string& what) {
@@ -113,7 +80,7 @@ void read_camera(const std::string& text, render::View* view) {
 bool is_flat(const sim::Frame& frame) { return frame.box && frame.box->dimension == 2; }
 
 /// One camera and one color scale for a whole sequence: everything fits, and a color means the same in all of it.
-void share_view(const Frames& frames, const std::vector<std::size_t>& chosen, render::PictureOptions* picture) {
+void share_view(const PictureSource& frames, const std::vector<std::size_t>& chosen, render::PictureOptions* picture) {
     for (const std::size_t index : chosen) {
         const sim::Frame frame = frames.frame(index);
         if (frame.surface.triangles.empty() && frame.points.empty()) continue;  // all burst
@@ -136,6 +103,20 @@ void write_picture(const fs::path& path, const render::Picture& picture, const R
     const bool transparent = options.picture.background == "transparent";
     if (path.extension() == ".exr") return io::write_file_atomically(path, io::exr_bytes(picture.light));
     io::write_file_atomically(path, io::png_bytes(render::develop(picture).raster(options.bits, transparent ? 4 : 3)));
+}
+
+/// What a picture shows and how it was made, for the file beside it.
+nlohmann::ordered_json notes_on(const fs::path& path, const sim::Frame& frame, const render::Picture& picture, const RenderOptions& options) {
+    const render::PictureOptions& o = options.picture;
+    nlohmann::ordered_json notes{{"picture", path.filename().string()}, {"lamella", build_info().version}, {"source", options.source},
+                                 {"solver", frame.solver}, {"time", frame.time}, {"time_unit", frame.time_unit},
+                                 {"thickness", picture.thickness_origin}, {"width", o.width}, {"height", o.height},
+                                 {"samples", o.samples}, {"seed", o.seed}, {"environment", o.environment},
+                                 {"background", o.background}, {"ground", o.ground}, {"exposure", o.exposure},
+                                 {"camera", {{"azimuth_deg", o.view.azimuth_deg}, {"elevation_deg", o.view.elevation_deg}, {"zoom", o.view.zoom}}}};
+    if (picture.scale)
+        notes["field"] = {{"name", picture.scale->name}, {"unit", picture.scale->unit}, {"low", picture.scale->low}, {"high", picture.scale->high}};
+    return notes;
 }
 
 void check_suffix(const fs::path& path) {
@@ -166,30 +147,45 @@ ProgressStyle progress_style(const std::string& name) {
     return ::isatty(STDERR_FILENO) != 0 ? ProgressStyle::kBar : ProgressStyle::kPlain;
 }
 
+/// Reads the options that are more than a number; what the camera sees by default depends on the first frame.
+void complete(const PictureSource& source, const std::vector<std::size_t>& chosen, RenderOptions* options) {
+    render::PictureOptions& picture = options->picture;
+    read_size(options->size, &picture);
+    if (!options->thickness.empty()) picture.thickness = parse_quantity(options->thickness, "m");
+    if (!options->video.empty() && fs::path(options->video).extension() != ".mp4")
+        throw InputError(fmt::format("{}: a film ends in .mp4", options->video));
+    if (is_flat(source.frame(chosen[0]))) picture.view = {.azimuth_deg = -90.0, .elevation_deg = 90.0, .zoom = 1.3};
+    if (!options->camera.empty()) read_camera(options->camera, &picture.view);
+    if (options->frame == "all") share_view(source, chosen, &picture);
+}
+
+/// The file of each chosen frame.
+std::vector<fs::path> picture_files(const PictureSource& source, const std::vector<std::size_t>& chosen, const RenderOptions& options) {
+    if (options.frame != "all" && !options.out.empty()) {
+        check_suffix(options.out);
+        return {options.out};
+    }
+    const fs::path folder = options.out.empty() ? source.default_folder() : fs::path(options.out);
+    std::vector<fs::path> files;
+    for (const std::size_t index : chosen) files.push_back(folder / (source.picture_name(index) + ".png"));
+    return files;
+}
+
 void render_sequence(RenderOptions options) {
     if (!render::can_render())
         throw InputError("this lamella was built without Embree, which pictures need; install libembree-dev and build again");
-    const bool video = !options.video.empty();
-    if (video) options.frame = "all";
-    const Frames frames(options.source);
-    const std::vector<std::size_t> chosen = frames.chosen(options.frame);
-    const bool one = options.frame != "all";
-    read_size(options.size, &options.picture);
-    if (!options.thickness.empty()) options.picture.thickness = parse_quantity(options.thickness, "m");
-    if (one && !options.out.empty()) check_suffix(options.out);
-    if (video && fs::path(options.video).extension() != ".mp4") throw InputError(fmt::format("{}: a film ends in .mp4", options.video));
-    if (is_flat(frames.frame(chosen[0]))) options.picture.view = {.azimuth_deg = -90.0, .elevation_deg = 90.0, .zoom = 1.3};
-    if (!options.camera.empty()) read_camera(options.camera, &options.picture.view);
-    if (!one) share_view(frames, chosen, &options.picture);
-
-    const fs::path folder = one ? (options.out.empty() ? frames.default_folder() : fs::path(options.out).parent_path())
-                                : (options.out.empty() ? frames.default_folder() : fs::path(options.out));
+    if (!options.video.empty()) options.frame = "all";
+    const PictureSource source(options.source);
+    const std::vector<std::size_t> chosen = source.chosen(options.frame);
+    complete(source, chosen, &options);
+    const std::vector<fs::path> files = picture_files(source, chosen, options);
+    const fs::path folder = files[0].parent_path();
     if (!folder.empty()) fs::create_directories(folder);
+
     const ThreadLimit threads(options.threads);
     ProgressDisplay display(progress_style(options.progress));
-    fs::path path;
+    nlohmann::ordered_json notes = nlohmann::ordered_json::array();
     for (std::size_t k = 0; k < chosen.size(); ++k) {
-        path = one && !options.out.empty() ? fs::path(options.out) : folder / fmt::format("{:06}.png", chosen[k]);
         const auto show = [&](double fraction) {
             if (stop_signal() != 0) throw Interrupted();
             run::RunProgress progress;
@@ -197,11 +193,17 @@ void render_sequence(RenderOptions options) {
             progress.fraction = (static_cast<double>(k) + fraction) / static_cast<double>(chosen.size());
             display.show(progress);
         };
-        write_picture(path, render::render_frame(frames.frame(chosen[k]), options.picture, show), options);
+        const sim::Frame frame = source.frame(chosen[k]);
+        const render::Picture picture = render::render_frame(frame, options.picture, show);
+        write_picture(files[k], picture, options);
+        notes.push_back(notes_on(files[k], frame, picture, options));
     }
     display.clear();
-    if (video) make_video(folder, options);
-    fmt::print(stderr, "{}\n", video ? options.video : one ? path.string() : fmt::format("{} pictures in {}", chosen.size(), folder.string()));
+    const bool one = chosen.size() == 1;
+    const fs::path beside = one ? fs::path(files[0]).replace_extension(".json") : folder / "pictures.json";
+    io::write_file_atomically(beside, (one ? notes[0] : notes).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    if (!options.video.empty()) make_video(folder, options);
+    fmt::print(stderr, "{}\n", !options.video.empty() ? options.video : one ? files[0].string() : fmt::format("{} pictures in {}", files.size(), folder.string()));
 }
 
 }  // namespace
@@ -216,7 +218,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
                     "  lamella render foam --background transparent --out a.exr   for further work\n");
     auto options = std::make_shared<RenderOptions>();
     render::PictureOptions& picture = options->picture;
-    command->add_option("source", options->source, "Run folder, or a frame (.vtp) or films (.ply, .obj, .fe)")->required()->type_name("RUN|FILE");
+    command->add_option("source", options->source, "Run folder; a frame (.vtp) or films (.ply, .obj, .fe); or a scene, of which the start is drawn")->required()->type_name("RUN|FILE|SCENE");
     command->add_option("--frame", options->frame, "A number, last or all")->type_name("N|last|all");
     command->add_option("--size", options->size, "In pixels; by default 960x720")->type_name("WxH");
     command->add_option("--samples", picture.samples, "Rays per pixel; by default 16, noise falls with the root of it")->type_name("N");
@@ -228,7 +230,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
     command->add_option("--background", picture.background, "dark, light, transparent, environment, or a color")->type_name("NAME|#RRGGBB");
     command->add_option("--environment", picture.environment, "Light: studio, window, daylight, gray, or a picture of light")->type_name("NAME|FILE.hdr|FILE.exr");
     command->add_flag("--ground", picture.ground, "A polished table under everything");
-    command->add_option("--thickness", options->thickness, "Of all films, e.g. \"350 nm\"; by default the frame's, or drained films")->type_name("LENGTH");
+    command->add_option("--thickness", options->thickness, "Of all films, e.g. \"350 nm\". By default the frame's; films of which it is not known are drawn as if they had drained for a while: thin above, thick below (assumed; the .json beside the picture says so)")->type_name("LENGTH");
     command->add_option("--borders", picture.border_width, "Width of Plateau borders and wires, 1 as usual, 0 none")->type_name("F");
     command->add_option("--exposure", picture.exposure, "Multiplies all light; by default 1")->type_name("F");
     command->add_option("--seed", picture.seed, "Of the noise")->type_name("N");

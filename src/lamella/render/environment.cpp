@@ -63,16 +63,16 @@ struct Environment::Room {
         if (name == "studio") {  // one large soft box above left, a strip on the right, weak ones from behind and below
             room.floor = {{0.13, 0.14, 0.16}};
             room.ceiling = {{0.50, 0.53, 0.58}};
-            room.lamps = hung({{-125.0, 36.0, 0.62, 0.78, 0.14, 0.10, {{13.0, 12.8, 12.3}}},
-                                {-12.0, 20.0, 0.22, 1.00, 0.10, 0.10, {{9.0, 9.5, 10.3}}},
-                                {95.0, 58.0, 0.85, 0.50, 0.20, 0.30, {{6.0, 6.0, 6.0}}},
+            room.lamps = hung({{-125.0, 36.0, 0.62, 0.78, 0.14, 0.10, {{8.8, 8.6, 8.3}}},
+                                {-12.0, 20.0, 0.22, 1.00, 0.10, 0.10, {{6.4, 6.7, 7.3}}},
+                                {95.0, 58.0, 0.85, 0.50, 0.20, 0.30, {{5.0, 5.0, 5.0}}},
                                 {150.0, -2.0, 0.24, 0.90, 0.12, 0.20, {{3.4, 3.2, 3.0}}},
                                 {-70.0, -52.0, 0.80, 0.34, 0.20, 0.40, {{1.7, 1.8, 2.1}}}});
         } else if (name == "window") {
             room.floor = {{0.20, 0.17, 0.14}};
             room.ceiling = {{0.62, 0.58, 0.52}};
-            room.lamps = hung({{-118.0, 28.0, 0.50, 0.72, 0.02, 0.03, {{14.0, 14.8, 16.0}}, 2, 3},
-                                {25.0, 24.0, 0.36, 0.54, 0.02, 0.04, {{6.5, 6.9, 7.6}}, 2, 3},
+            room.lamps = hung({{-118.0, 28.0, 0.50, 0.72, 0.02, 0.03, {{10.5, 11.1, 12.0}}, 2, 3},
+                                {25.0, 24.0, 0.36, 0.54, 0.02, 0.04, {{5.2, 5.5, 6.1}}, 2, 3},
                                 {120.0, 40.0, 0.90, 0.60, 0.25, 0.50, {{3.0, 2.6, 2.1}}}});
         } else if (name == "daylight") {
             room.sky = true;
@@ -168,10 +168,22 @@ LightSample Environment::sample(double a, double b) const {
     const double* cells = &cell_sum_[r * (kColumns + 1)];
     const std::size_t c = find(cells, kColumns, b, &in_cell);
     const double row = (static_cast<double>(r) + in_row) / kRows, column = (static_cast<double>(c) + in_cell) / kColumns;
-    const double probability = (row_sum_[r + 1] - row_sum_[r]) / row_sum_[kRows] * (cells[c + 1] - cells[c]) / cells[kColumns];
-    const double solid_angle = 2.0 * pi * pi / (kRows * kColumns) * std::max(std::sin(pi * row), 1e-9);
     const Vec3 direction = direction_at(row, column);
-    return {direction, light(direction), probability / solid_angle};
+    return {direction, light(direction), cell_density(r, c, pi * row)};
+}
+
+double Environment::density(const Vec3& d) const {
+    const double polar = std::acos(std::clamp(d[2], -1.0, 1.0)), around = std::atan2(d[1], d[0]) / (2.0 * pi);
+    const auto r = std::min(static_cast<std::size_t>(polar / pi * kRows), kRows - 1);
+    const auto c = std::min(static_cast<std::size_t>((around < 0.0 ? around + 1.0 : around) * kColumns), kColumns - 1);
+    return cell_density(r, c, polar);
+}
+
+/// By the table's cell and the angle from the z axis.
+double Environment::cell_density(std::size_t r, std::size_t c, double polar) const {
+    const double* cells = &cell_sum_[r * (kColumns + 1)];
+    const double probability = (row_sum_[r + 1] - row_sum_[r]) / row_sum_[kRows] * (cells[c + 1] - cells[c]) / cells[kColumns];
+    return probability / (2.0 * pi * pi / (kRows * kColumns) * std::max(std::sin(polar), 1e-9));
 }
 
 void Environment::prepare_matte() {

@@ -39,12 +39,15 @@ public:
 
     /// Draws a direction where the light is strong, from two numbers in [0, 1).
     LightSample sample(double a, double b) const;
+    /// The density [1/sr] with which sample() draws a direction.
+    double density(const Vec3& direction) const;
 
     static const std::vector<std::string>& names();
 
 private:
     optics::Rgb painted(const Vec3& direction) const;
     optics::Rgb cell_light(std::size_t row, std::size_t column) const;
+    double cell_density(std::size_t row, std::size_t column, double polar) const;
     void prepare_sampling();
     void prepare_matte();
 

@@ -36,6 +36,7 @@ struct Picture {
     io::LightImage shown;             ///< the same with highlights compressed before the samples of a pixel were averaged, as
                                       ///< edges of bright lamps would be jagged otherwise
     std::optional<ColorScale> scale;  ///< where a field colors it
+    std::string thickness_origin;     ///< "frame", "particles", "given", "assumed: ...", "none" where no film shows it
 };
 
 /// Follows rays of light through the films of a frame.

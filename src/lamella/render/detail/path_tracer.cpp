@@ -51,6 +51,14 @@ Rgb field_film_light(const Rgb& color, const Vec3& normal, const Vec3& direction
     return (0.38 + 0.62 * lit) * color;
 }
 
+/// A direction above a surface, with a density of cosine / pi.
+Vec3 facing_direction(const Vec3& normal, double a, double b) {
+    const double z = 1.0 - 2.0 * a, around = 2.0 * std::numbers::pi * b, ring = std::sqrt(std::max(0.0, 1.0 - z * z));
+    const Vec3 sum = normal + Vec3{{ring * std::cos(around), ring * std::sin(around), z}};
+    const double length = norm(sum);
+    return length > 1e-6 ? sum / length : normal;
+}
+
 }  // namespace
 
 void PathTracer::look(const Vec3& origin, std::vector<CameraRay>& rays, std::vector<Seen>* seen) {
@@ -132,9 +140,10 @@ void PathTracer::show_film(const Shot& shot, const FilmCrossing& crossing, std::
     shot.seen.light += times(weight, far);
     const bool first = shot.path.depth == 0;
     const double brightness = (std::abs(own[0]) + std::abs(own[1]) + std::abs(own[2])) / 3.0;
-    // Measured on double bubbles: noise falls with more rays, but not as fast as the time grows.
-    constexpr double kEagerFirst = 6.0, kEagerLater = 2.0;
-    const double chance = std::min(1.0, (first ? kEagerFirst : kEagerLater) * brightness);
+    // What is in the way can take all of E: where a lamp is mirrored, (nearly) every ray looks.
+    constexpr double kOwn = 4.0, kLamp = 1.5, kLater = 0.4;
+    const double eager = kOwn * brightness + kLamp * std::abs(optics::luminance(times(own, far)));
+    const double chance = std::min(1.0, (first ? 1.0 : kLater) * eager);
     const double lot = first && number < 2 ? shot.from.numbers.lot(number) : shot.from.numbers.next();
     if (lot >= chance || shot.path.depth >= kDeepest) return;
     shot.seen.light -= 1.0 / chance * times(weight, far);
@@ -160,17 +169,34 @@ void PathTracer::show_thing(const Shot& shot, const Rgb& weight) {
 }
 
 /// Light that white matte paper throws back, so that it is at most white: lamps that are right for films, which reflect four
-/// percent, would burn paper out. What is in the way of the light is found by drawing one lamp.
+/// percent, would burn paper out. A little of it comes from everywhere.
 Rgb PathTracer::matte_light(const Shot& shot, const Vec3& place, const Vec3& normal) const {
+    constexpr double kEverywhere = 0.10;
+    const double full = environment_.brightest_matte();
+    const double open = openness(shot, place, normal);
+    return (open * environment_.matte(normal) + kEverywhere * (0.4 + 0.6 * open) * full * kWhite) / ((1.0 + kEverywhere) * full);
+}
+
+/// How much of the light that could reach a matte surface does: of a few directions, some drawn where the environment is
+/// bright and some where the surface faces, the share that nothing opaque blocks, by what they would bring. Between 0 and 1
+/// and exact where all or nothing is open; elsewhere its mean is off by a part that falls with the number of directions.
+double PathTracer::openness(const Shot& shot, const Vec3& place, const Vec3& normal) const {
     const bool first = shot.path.depth == 0;
     SampleNumbers& numbers = shot.from.numbers;
-    const double a = first ? numbers.lot(2) : numbers.next(), b = first ? numbers.lot(3) : numbers.next();
-    const LightSample lamp = environment_.sample(a, b);
-    const double cosine = dot(normal, lamp.direction);
-    Rgb light = environment_.matte(normal);
-    if (cosine > 0.0 && stage_.rays->blocked(place + 1e-4 * normal, lamp.direction))
-        light -= cosine / (std::numbers::pi * lamp.density) * lamp.light;
-    return light / environment_.brightest_matte();
+    const int directions = first && shot.meeting.thing.thing == Thing::kBall ? 6 : 2;
+    double open = 0.0, all = 0.0;
+    for (int i = 0; i < directions; ++i) {
+        const double a = first && i < 2 ? numbers.lot(2 * static_cast<std::size_t>(i)) : numbers.next();
+        const double b = first && i < 2 ? numbers.lot(2 * static_cast<std::size_t>(i) + 1) : numbers.next();
+        const Vec3 direction = i % 2 == 0 ? environment_.sample(a, b).direction : facing_direction(normal, a, b);
+        const double cosine = dot(normal, direction);
+        if (cosine <= 0.0) continue;
+        const double density = 0.5 * (environment_.density(direction) + cosine / std::numbers::pi);
+        const double bring = optics::luminance(environment_.light(direction)) * cosine / density;
+        all += bring;
+        if (!stage_.rays->blocked(place + 1e-4 * normal, direction)) open += bring;
+    }
+    return all > 0.0 ? open / all : 1.0;
 }
 
 /// A Plateau border as a round thread of water: light is bent into it and out again, as in an endless cylinder, whose far side
@@ -212,11 +238,8 @@ void PathTracer::show_ground(const Shot& shot, const Rgb& weight) {
     const Vec3& direction = shot.ray.direction;
     const Vec3 place = shot.ray.origin + static_cast<double>(shot.meeting.thing.distance) * direction;
     const double away = place[0] * place[0] + place[1] * place[1];
-    constexpr double kShaded = 25.0;  // shadows end five radii away
-    double open = 1.0;
-    if (away < kShaded)
-        open = std::clamp(optics::luminance(matte_light(shot, place, up)) / optics::luminance(environment_.matte(up)) *
-                          environment_.brightest_matte(), 0.0, 1.0);
+    constexpr double kShaded = 9.0;  // shadows end three radii away
+    const double open = away < kShaded ? 1.0 - (1.0 - away / kShaded) * (1.0 - openness(shot, place, up)) : 1.0;
     if (shot.path.depth == 0) shot.seen.alpha = 1.0 - open * (1.0 - shot.seen.alpha);
     const bool backdrop = shot.path.behind == Behind::kBackground;
     const Rgb color = backdrop ? *shot.from.background : shot.path.behind == Behind::kNothing ? Rgb{} : stage_.ground->color;

@@ -24,7 +24,7 @@ struct Seen {
 /// Mirror images. A film shows E, the light of the environment in the mirrored direction, plus (L - E), what else the
 /// mirrored ray meets. E is cheap and exact; the small rest is taken by lot, with a chance that grows with the film's
 /// reflectance: nearly always for the films that the camera sees, seldom for images of images. No bias, little noise.
-/// Matte surfaces do the same: what the whole environment would give them, less what others take away.
+/// Matte surfaces show what the whole environment would give them, times the open share of it.
 class PathTracer {
 public:
     PathTracer(const Stage& stage, const Environment& environment, const optics::FilmColorTable& colors)
@@ -57,6 +57,7 @@ private:
     void show_border(const Shot& shot, const optics::Rgb& weight);
     void show_ground(const Shot& shot, const optics::Rgb& weight);
     optics::Rgb matte_light(const Shot& shot, const Vec3& place, const Vec3& normal) const;
+    double openness(const Shot& shot, const Vec3& place, const Vec3& normal) const;
     optics::Rgb far_light(const Vec3& direction) const;
     void send(const Shot& from, const RayStart& ray, const optics::Rgb& weight, Behind behind);
 

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace lamella::render::detail {
@@ -22,6 +23,7 @@ struct Stage {
     Bounds bounds;                        ///< in the frame
     FineFilms films;                      ///< their values: thickness [m], or the field that colors them
     bool films_show_field = false;
+    std::string thickness_origin = "none";  ///< see Picture
     std::vector<optics::Rgb> ball_color;
     std::optional<ColorScale> scale;      ///< where a field colors things
     std::optional<Ground> ground;
