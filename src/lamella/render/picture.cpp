@@ -187,8 +187,10 @@ Picture render_frame(const sim::Frame& frame, const PictureOptions& options, con
                         optics::FilmColorTable({}, {.thicknesses = 801, .cosines = 65}),
                         Camera(options.view, {{}, 1.0}, options.width, options.height)};
 
-    Picture picture{{options.width, options.height, 4, std::vector<float>(4 * options.width * options.height)}, {},
-                    studio.stage.scale, studio.stage.thickness_origin};
+    Picture picture;
+    picture.scale = studio.stage.scale;
+    picture.thickness_origin = studio.stage.thickness_origin;
+    picture.light = {options.width, options.height, 4, std::vector<float>(4 * options.width * options.height)};
     picture.shown = picture.light;
     const std::size_t across = (options.width + kTile - 1) / kTile, tiles = across * ((options.height + kTile - 1) / kTile);
     const std::size_t batch = std::max<std::size_t>(48, 12 * static_cast<std::size_t>(thread_count()));

@@ -84,18 +84,17 @@ void find_borders(const sim::Surface& surface, const std::vector<std::uint32_t>&
     }
 }
 
-/// Angle-weighted means of the triangles' normals.
+/// Means of the triangles' normals, sum (a x b) / (|a|^2 |b|^2) over the edges a, b of a corner: exact inside a film whose
+/// points lie on a sphere, as those of bubbles at rest do. [Max99]
 void average_normals(FilmPatches* patches) {
     patches->corner_normal.assign(patches->corner_point.size(), Vec3{});
     for (const auto& t : patches->triangles) {
         std::array<Vec3, 3> p;
         for (std::size_t k = 0; k < 3; ++k) p[k] = patches->point[patches->corner_point[t[k]]];
-        const Vec3 area = cross(p[1] - p[0], p[2] - p[0]);
-        const double length = norm(area);
-        if (length == 0.0) continue;
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3 a = p[(k + 1) % 3] - p[k], b = p[(k + 2) % 3] - p[k];
-            patches->corner_normal[t[k]] += std::atan2(norm(cross(a, b)), dot(a, b)) / length * area;
+            const double weight = squared_norm(a) * squared_norm(b);
+            if (weight > 0.0) patches->corner_normal[t[k]] += cross(a, b) / weight;
         }
     }
     for (Vec3& n : patches->corner_normal) {

@@ -97,7 +97,8 @@ void PathTracer::shade(const Shot& shot) {
     if (stage_.ground) meet_ground(shot);
     const Rgb passed = cross_films(shot);
     const Rgb weight = times(shot.path.weight, passed);
-    if (shot.path.depth == 0) shot.seen.alpha = 1.0 - optics::luminance(passed);
+    if (shot.path.depth == 0 && !shot.meeting.films.empty())
+        shot.seen.alpha = std::clamp(1.0 - optics::luminance(passed), 0.0, 1.0);
     if (shot.meeting.thing.thing != Thing::kNothing) return show_thing(shot, weight);
     if (shot.path.behind == Behind::kBackground) shot.seen.light += times(weight, *shot.from.background);
     else if (shot.path.behind == Behind::kEnvironment) shot.seen.light += times(weight, far_light(shot.ray.direction));
