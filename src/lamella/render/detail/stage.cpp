@@ -1,9 +1,9 @@
 #include "lamella/render/detail/stage.h"
 
 #include "lamella/core/error.h"
-#include "lamella/core/nearest_word.h"
 #include "lamella/core/parallel.h"
 #include "lamella/render/detail/assumed_thickness.h"
+#include "lamella/render/detail/frame_fields.h"
 #include "lamella/render/detail/particle_average.h"
 
 #include <fmt/format.h>
@@ -16,61 +16,13 @@ namespace lamella::render {
 
 namespace {
 
+using detail::corner_values;
 using detail::FilmPatches;
+using detail::find_fields;
+using detail::NamedField;
+using detail::radius_field;
 using detail::Stage;
-
-struct NamedField {
-    const sim::Field* field;
-    enum Place { kVertices, kFaces, kPoints } place;
-};
-
-std::vector<NamedField> shown_fields(const sim::Frame& frame) {
-    std::vector<NamedField> fields;
-    if (!frame.surface.triangles.empty()) {
-        for (const sim::Field& f : frame.surface.vertex_fields) fields.push_back({&f, NamedField::kVertices});
-        for (const sim::Field& f : frame.surface.face_fields)
-            if (f.components <= 3) fields.push_back({&f, NamedField::kFaces});
-    }
-    for (const sim::Field& f : frame.points.fields) fields.push_back({&f, NamedField::kPoints});
-    return fields;
-}
-
-/// The field of that name; a name may stand for one of the films and one of the points.
-std::vector<NamedField> find_fields(const sim::Frame& frame, const std::string& name) {
-    std::vector<NamedField> found;
-    std::vector<std::string> names;
-    for (const NamedField& f : shown_fields(frame)) {
-        names.push_back(f.field->name);
-        if (f.field->name == name) found.push_back(f);
-    }
-    if (!found.empty()) return found;
-    const auto near = nearest_word(name, names);
-    std::string list;
-    for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
-    throw InputError(fmt::format("the frame has no field {}{}; it has {}", name,
-                                 near ? fmt::format("; did you mean {}?", *near) : "", list.empty() ? "none" : list));
-}
-
-sim::Field radius_field(const sim::Points& points) { return {"radius", points.length_unit, 1, false, points.radius}; }
-
-/// The values of a field for the corners of each triangle.
-std::vector<std::array<double, 3>> corner_values(const FilmPatches& patches, const NamedField& field) {
-    const std::vector<double> values = scalar_values(*field.field);
-    std::vector<std::array<double, 3>> corners(patches.triangles.size());
-    for (std::size_t t = 0; t < corners.size(); ++t)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t i = field.place == NamedField::kVertices ? patches.source_corner[t][k] : patches.source[t];
-            if (i >= values.size()) throw InputError(fmt::format("field {} has too few values", field.field->name));
-            corners[t][k] = values[i];
-        }
-    return corners;
-}
-
-std::optional<NamedField> thickness_field(const sim::Frame& frame) {
-    for (const NamedField& f : shown_fields(frame))
-        if (f.field->name == "thickness" && f.field->components == 1) return f;
-    return std::nullopt;
-}
+using detail::thickness_field;
 
 /// As many pieces per edge as make a few hundred thousand triangles.
 int pieces_for(std::size_t triangles) {
