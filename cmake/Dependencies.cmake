@@ -6,15 +6,28 @@ find_package(spdlog REQUIRED)          # run: log.txt
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)  # linalg: sparse and dense matrices
 find_package(ZLIB REQUIRED)            # io: compressed frames
 find_package(HDF5 REQUIRED COMPONENTS C)  # io: checkpoints
+find_package(PNG REQUIRED)             # io: pictures
 find_package(nlohmann_json REQUIRED)   # scene (importers), run, apps
 find_package(tomlplusplus REQUIRED)    # scene
 if(LAMELLA_BUILD_APP)
   find_package(CLI11 REQUIRED)         # apps
 endif()
 
+find_package(OpenEXR CONFIG QUIET)     # io, optional: pictures of light
+find_package(embree 3.13 CONFIG QUIET) # render, optional: rays
+
 set(LAMELLA_LIBRARY_VERSIONS "oneTBB ${TBB_VERSION}, fmt ${fmt_VERSION}, spdlog ${spdlog_VERSION}, \
 Eigen ${Eigen3_VERSION}, zlib ${ZLIB_VERSION_STRING}, HDF5 ${HDF5_VERSION}, nlohmann-json ${nlohmann_json_VERSION}, \
-toml++ ${tomlplusplus_VERSION}")
+toml++ ${tomlplusplus_VERSION}, libpng ${PNG_VERSION_STRING}")
 
 # Parts that are built only where their dependency is present, as `lamella version` lists them: "cuda, render".
-set(LAMELLA_OPTIONAL_PARTS "")
+set(optional_parts "")
+if(embree_FOUND)
+  list(APPEND optional_parts render)
+  string(APPEND LAMELLA_LIBRARY_VERSIONS ", Embree ${embree_VERSION}")
+endif()
+if(OpenEXR_FOUND)
+  list(APPEND optional_parts exr)
+  string(APPEND LAMELLA_LIBRARY_VERSIONS ", OpenEXR ${OpenEXR_VERSION}")
+endif()
+list(JOIN optional_parts ", " LAMELLA_OPTIONAL_PARTS)

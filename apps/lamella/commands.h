@@ -16,9 +16,10 @@ void add_scenes_command(CLI::App& app);
 void add_explain_command(CLI::App& app);
 void add_measure_command(CLI::App& app);
 void add_plot_command(CLI::App& app);
+void add_render_command(CLI::App& app, int& exit_code);
 void add_export_command(CLI::App& app);
 void add_import_command(CLI::App& app);
 void add_version_command(CLI::App& app);
-void add_later_commands(CLI::App& app);  ///< render, view: listed, but not in this version
+void add_later_commands(CLI::App& app);  ///< view: listed, but not in this version
 
 }  // namespace lamella::app

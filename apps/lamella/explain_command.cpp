@@ -1,5 +1,7 @@
 #include "lamella/core/error.h"
 #include "lamella/core/nearest_word.h"
+#include "lamella/io/atomic_file.h"
+#include "lamella/render/color_chart.h"
 #include "lamella/scene/film_tables.h"
 #include "lamella/scene/scene.h"
 #include "lamella/sim/read_options.h"
@@ -11,8 +13,10 @@
 #include "commands.h"
 #include "output.h"
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 namespace lamella::app {
@@ -24,6 +28,8 @@ struct ExplainOptions {
     std::string topic;
     bool json = false;
     bool markdown = false;
+    std::string out;           ///< of colors: a picture
+    std::string light = "D65"; ///< of colors
 };
 
 /// A table of a scene that can be explained.
@@ -94,6 +100,7 @@ void list_topics(const std::vector<Topic>& topics, bool json) {
     }
     std::vector<std::pair<std::string, std::string>> rows;
     for (const Topic& topic : topics) rows.emplace_back(topic.name, topic.summary);
+    rows.emplace_back("colors", "not a table: the colors of soap films over their thickness");
     print_result("Solvers and tables of a scene; `lamella explain NAME` shows the options:\n" + two_columns(rows));
 }
 
@@ -125,7 +132,34 @@ std::vector<OptionInfo> select_options(const Topic& topic, const std::string& pa
                                  near ? fmt::format("; did you mean {}.{}?", topic.name, *near) : "", topic.name));
 }
 
+/// The colors of soap films: a picture, or a table on standard output, with swatches where it is a terminal.
+void explain_colors(const ExplainOptions& options) {
+    const optics::FilmLight film{.light = optics::illuminant(options.light)};
+    if (!options.out.empty()) {
+        if (!options.out.ends_with(".png")) throw InputError(fmt::format("{}: the chart is a .png file", options.out));
+        constexpr std::size_t kWidth = 1600, kHeight = 800;
+        io::write_file_atomically(options.out, io::png_bytes(render::color_chart(film, kWidth, kHeight).raster(8, 3)));
+        fmt::print(stderr, "{}\n", options.out);
+        return;
+    }
+    constexpr double kStep = 20e-9;  // [m]
+    const bool swatches = ::isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    std::string text = fmt::format("Colors of soap films in {} light, seen from straight above\n\n"
+                                   "thickness  reflected  color    name\n", film.light.name);
+    for (const render::ChartRow& row : render::color_rows(film, kStep)) {
+        const auto& [r, g, b] = row.screen;
+        const std::string color = fmt::format("#{:02x}{:02x}{:02x}", r, g, b);
+        list.push_back({{"thickness", row.thickness}, {"reflectance", row.reflectance}, {"color", color}, {"name", row.name}});
+        const std::string swatch = swatches ? fmt::format("  \x1b[48;2;{};{};{}m        \x1b[0m", r, g, b) : "";
+        text += fmt::format("{:6.0f} nm   {:6.2f} %  {}  {:<10}{}\n", 1e9 * row.thickness, 100.0 * row.reflectance, color, row.name, swatch);
+    }
+    print_result(options.json ? list.dump(2) + "\n" : text);
+}
+
 void explain(const ExplainOptions& options) {
+    if (options.topic == "colors") return explain_colors(options);
+    if (!options.out.empty()) throw InputError("--out belongs to `lamella explain colors`");
     const std::vector<Topic> topics = all_topics();
     if (options.topic.empty()) return list_topics(topics, options.json);
 
@@ -151,10 +185,14 @@ void add_explain_command(CLI::App& app) {
                                     "  lamella explain\n"
                                     "  lamella explain bubble\n"
                                     "  lamella explain bubble.gas\n"
-                                    "  lamella explain bubble.gas.medium_ratio --json\n");
+                                    "  lamella explain bubble.gas.medium_ratio --json\n"
+                                    "  lamella explain colors --out colors.png     the colors of soap films\n");
     auto options = std::make_shared<ExplainOptions>();
-    command->add_option("topic", options->topic, "Solver or table of a scene, a group of options, or one option")
+    command->add_option("topic", options->topic, "Solver or table of a scene, a group of options, or one option; or colors")
         ->type_name("SOLVER[.OPTION]");
+    command->add_option("--out", options->out, "Of colors: draw the chart into this file")->type_name("FILE.png");
+    command->add_option("--light", options->light, "Of colors: D65 (daylight), A (bulb), E (equal energy) or \"5000 K\"")
+        ->type_name("LIGHT");
     command->add_flag("--json", options->json, "Print JSON");
     command->add_flag("--markdown", options->markdown, "Print the table that the documentation uses");
     command->callback([options] { explain(*options); });

@@ -23,6 +23,7 @@ int run_program(int argc, char** argv) {
         "Examples:\n"
         "  lamella run bubble/coarsening-2d-small --out foam   run a shipped scene\n"
         "  lamella plot foam                                   draw what came out\n"
+        "  lamella render foam                                 a picture of the last frame\n"
         "  lamella explain bubble.gas                          what the options mean\n\n"
         "Exit codes: 0 done; 2 wrong input; 3 the run failed numerically; 4 a file could not be read or\n"
         "written; 130, 143 interrupted (a checkpoint is written first).");
@@ -32,6 +33,7 @@ int run_program(int argc, char** argv) {
     app::add_explain_command(program);
     app::add_measure_command(program);
     app::add_plot_command(program);
+    app::add_render_command(program, exit_code);
     app::add_export_command(program);
     app::add_import_command(program);
     app::add_version_command(program);

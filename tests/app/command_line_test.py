@@ -41,7 +41,7 @@ class Misuse(ProgramTest):
             self.assert_refused(lamella(*arguments, cwd=self.folder))
 
     def test_of_things_that_come_later_says_so(self):
-        for command in ("render", "view"):
+        for command in ("view",):
             self.assert_refused(lamella(command, "foam", "--size", "10x10"), "later version")
 
     def test_of_a_device_that_is_not_there_says_so(self):
@@ -114,6 +114,18 @@ class ReadOuts(ProgramTest):
         self.assert_refused(lamella("explain", "buble"), "did you mean bubble?")
         self.assert_refused(lamella("explain", "bubble.gas.medium_ration"), "did you mean bubble.gas.medium_ratio?")
         self.assert_refused(lamella("explain", "bubble.medium_ratio"), "did you mean bubble.gas.medium_ratio?")
+
+    def test_explain_shows_the_colors_of_films(self):
+        text = lamella("explain", "colors").stdout
+        self.assertIn("#000000  black", text)
+        rows = json.loads(lamella("explain", "colors", "--json").stdout)
+        self.assertEqual([round(1e9 * row["thickness"]) for row in rows[:3]], [0, 20, 40])
+        self.assertLess(abs(rows[5]["reflectance"] - 0.0775), 1e-3)
+        self.assert_exit(lamella("explain", "colors", "--light", "3000 K", "--out", self.folder / "c.png"), 0)
+        self.assertTrue((self.folder / "c.png").read_bytes().startswith(b"\x89PNG"))
+        self.assert_refused(lamella("explain", "colors", "--light", "neon"), "D65")
+        self.assert_refused(lamella("explain", "colors", "--out", self.folder / "c.jpg"), ".png")
+        self.assert_refused(lamella("explain", "bubble", "--out", "x.png"), "colors")
 
     def test_version_says_what_is_in(self):
         self.assertRegex(lamella("version").stdout, r"^lamella \d+\.\d+\.\d+")

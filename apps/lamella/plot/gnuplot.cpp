@@ -1,21 +1,15 @@
 #include "gnuplot.h"
 
+#include "external_program.h"
 #include "lamella/core/error.h"
 #include "lamella/io/atomic_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-
-extern char** environ;  // POSIX has it in no header
 
 namespace lamella::app {
 namespace {
@@ -36,33 +30,8 @@ std::string terminal(const fs::path& picture, int width, int height) {
 
 /// Runs gnuplot on the script, its messages going to a file; returns the exit status.
 int run_gnuplot(const fs::path& script, const fs::path& messages) {
-    posix_spawn_file_actions_t actions;
-    ::posix_spawn_file_actions_init(&actions);
-    ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    std::string program = "gnuplot";
-    std::string no_settings = "--default-settings";
-    std::string file = script.string();
-    const std::array<char*, 4> arguments{program.data(), no_settings.data(), file.data(), nullptr};
-    pid_t child = 0;
-    const int error = ::posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments.data(), environ);
-    ::posix_spawn_file_actions_destroy(&actions);
-    if (error == ENOENT)
-        throw IoError("gnuplot is needed for plots and is not on the PATH (Debian: apt install gnuplot-nox)");
-    if (error != 0) throw IoError(fmt::format("gnuplot: {}", std::strerror(error)));
-    int status = 0;
-    while (::waitpid(child, &status, 0) < 0)
-        if (errno != EINTR) throw IoError(fmt::format("gnuplot: {}", std::strerror(errno)));
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-/// The last line of gnuplot's messages that says something.
-std::string last_message(const fs::path& messages) {
-    std::string text = io::read_file(messages);
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
-    const std::size_t line = text.rfind('\n');
-    return line == std::string::npos ? text : text.substr(line + 1);
+    return run_external({"gnuplot", "--default-settings", script.string()}, messages,
+                        "gnuplot is needed for plots and is not on the PATH (Debian: apt install gnuplot-nox)");
 }
 
 }  // namespace
@@ -100,7 +69,7 @@ void Gnuplot::draw(const std::string& script, const fs::path& picture, int width
     io::write_file_atomically(script_file, "set encoding utf8\n" + terminal(picture, width, height) + "set output " +
                                                gnuplot_text(drawn.string()) + "\n" + script + "\nunset output\n");
     if (run_gnuplot(script_file, messages) != 0 || !fs::exists(drawn))
-        throw IoError(fmt::format("gnuplot could not draw {}: {}", picture.string(), last_message(messages)));
+        throw IoError(fmt::format("gnuplot could not draw {}: {}", picture.string(), last_line(messages)));
     io::write_file_atomically(picture, io::read_file(drawn));
 }
 

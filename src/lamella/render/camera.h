@@ -1,0 +1,40 @@
+#pragma once
+
+#include "lamella/core/vec.h"
+#include "lamella/sim/frame.h"
+
+namespace lamella::render {
+
+/// From where a frame is looked at. z points up.
+struct View {
+    double azimuth_deg = -62.0;   ///< of the camera around the z axis; 0: on the +x side
+    double elevation_deg = 16.0;  ///< above the horizon; 90: from straight above, +y up in the picture
+    double zoom = 1.0;            ///< 1: everything just fits
+    double field_of_view_deg = 26.0;  ///< of the picture's shorter side
+};
+
+/// The ball around everything that is seen.
+struct Bounds {
+    Vec3 center;
+    double radius = 1.0;
+};
+
+/// @throws InputError  the frame shows nothing
+Bounds frame_bounds(const sim::Frame& frame);
+/// The smallest ball around both.
+Bounds joined(const Bounds& a, const Bounds& b);
+
+/// Rays through the points of a picture.
+class Camera {
+public:
+    Camera(const View& view, const Bounds& bounds, std::size_t width, std::size_t height);
+
+    const Vec3& position() const { return position_; }
+    /// Unit direction through a point of the picture [pixels], (0, 0) its upper left corner.
+    Vec3 direction(double x, double y) const;
+
+private:
+    Vec3 position_, corner_, across_, down_;  // corner_ + x across_ + y down_ is the direction
+};
+
+}  // namespace lamella::render

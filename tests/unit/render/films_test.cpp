@@ -1,0 +1,82 @@
+#include "lamella/render/detail/assumed_thickness.h"
+#include "lamella/render/detail/curved_film.h"
+#include "lamella/render/detail/particle_average.h"
+
+#include <gtest/gtest.h>
+
+#include "shown_frames.h"
+
+namespace lamella::render::detail {
+namespace {
+
+double farthest_from_sphere(const std::vector<std::array<float, 3>>& positions) {
+    double worst = 0.0;
+    for (const auto& p : positions)
+        worst = std::max(worst, std::abs(std::hypot(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])) - 1.0));
+    return worst;
+}
+
+TEST(RefineFilms, RoundsASphere) {
+    // Flat triangles lie below the sphere by O(h^2), 0.07 at level 2; the patches by O(h^4), as their normals are exact.
+    std::vector<double> error;
+    for (const int level : {2, 3, 4}) {
+        const FilmPatches patches = film_patches(sphere_film(level).surface);
+        EXPECT_TRUE(patches.borders.empty());
+        const FineFilms fine = refine_films(patches, std::vector<std::array<double, 3>>(patches.triangles.size(), {1.0, 1.0, 1.0}), 3);
+        EXPECT_EQ(fine.triangles.size(), 9 * patches.triangles.size());
+        for (const float value : fine.value) EXPECT_EQ(value, 1.0F);
+        error.push_back(farthest_from_sphere(fine.position));
+    }
+    EXPECT_LT(error[0], 0.011);
+    EXPECT_GT(std::log2(error[0] / error[1]), 3.0);
+    EXPECT_GT(std::log2(error[1] / error[2]), 3.0);
+}
+
+TEST(FilmPatches, FindRimsAndNormals) {
+    const FilmPatches patches = film_patches(flat_film(3).surface);
+    EXPECT_EQ(patches.borders.size(), 12U);
+    for (const BorderEdge& edge : patches.borders) {
+        EXPECT_EQ(edge.films, 1);
+        EXPECT_TRUE(edge.on_wire);  // nothing says which vertices are held: every rim is
+    }
+    for (const Vec3& normal : patches.corner_normal) EXPECT_NEAR(normal[2], 1.0, 1e-12);
+    for (const Thread& thread : refine_borders(patches, 2)) {
+        EXPECT_TRUE(thread.wire);
+        EXPECT_NEAR(thread.points[1][2], 0.0, 1e-12);
+    }
+}
+
+TEST(ParticleAverage, FollowsWhatParticlesCarry) {
+    std::vector<Vec3> places;
+    std::vector<double> constant, slope;
+    for (int j = -30; j <= 30; ++j)
+        for (int i = -30; i <= 30; ++i) {
+            places.push_back({{i / 30.0, j / 30.0, 0.0}});
+            constant.push_back(4e-7);
+            slope.push_back(1.0 + i / 30.0);
+        }
+    const ParticleAverage one(places, constant), two(places, slope);
+    EXPECT_NEAR(one.at({{0.123, -0.4, 0.0}}), 4e-7, 1e-18);
+    EXPECT_NEAR(two.at({{0.2, 0.1, 0.0}}), 1.2, 0.01);
+    EXPECT_EQ(one.at({{50.0, 0.0, 0.0}}), 0.0);
+}
+
+TEST(AssumedThickness, IsThinAboveAndThickBelow) {
+    double above = 0.0, below = 0.0;
+    for (int i = 0; i < 400; ++i) {
+        const double a = 0.1 * i;
+        const Vec3 up{{0.6 * std::cos(a), 0.6 * std::sin(a), 0.75}}, down{{0.6 * std::cos(a), 0.6 * std::sin(a), -0.75}};
+        for (const Vec3& place : {up, down}) {
+            const double h = assumed_thickness(place, static_cast<std::uint32_t>(i % 7));
+            EXPECT_GE(h, 20e-9);
+            EXPECT_LE(h, 900e-9);
+        }
+        above += assumed_thickness(up, 0) / 400;
+        below += assumed_thickness(down, 0) / 400;
+    }
+    EXPECT_LT(above, 320e-9);
+    EXPECT_GT(below, 550e-9);
+}
+
+}  // namespace
+}  // namespace lamella::render::detail
