@@ -10,6 +10,11 @@ find_package(nlohmann_json REQUIRED)   # scene (importers), run, apps
 find_package(tomlplusplus REQUIRED)    # scene
 if(LAMELLA_BUILD_APP)
   find_package(CLI11 REQUIRED)         # apps
+  find_package(PkgConfig)
+  if(PkgConfig_FOUND)
+    pkg_check_modules(cpp_httplib IMPORTED_TARGET cpp-httplib)  # apps/lamella/view: the server of `lamella view`
+  endif()
+  find_program(LAMELLA_NODE node DOC "Node.js, which builds the page of `lamella view`")
 endif()
 
 set(LAMELLA_LIBRARY_VERSIONS "oneTBB ${TBB_VERSION}, fmt ${fmt_VERSION}, spdlog ${spdlog_VERSION}, \
@@ -18,3 +23,9 @@ toml++ ${tomlplusplus_VERSION}")
 
 # Parts that are built only where their dependency is present, as `lamella version` lists them: "cuda, render".
 set(LAMELLA_OPTIONAL_PARTS "")
+# The page is built from web/ with the packages that `npm ci` put beside it: a build fetches nothing by itself.
+set(LAMELLA_HAS_PAGE OFF)
+if(cpp_httplib_FOUND AND LAMELLA_NODE AND EXISTS ${PROJECT_SOURCE_DIR}/web/node_modules/esbuild/package.json)
+  set(LAMELLA_HAS_PAGE ON)
+  list(APPEND LAMELLA_OPTIONAL_PARTS view)
+endif()

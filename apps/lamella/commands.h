@@ -19,6 +19,7 @@ void add_plot_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_import_command(CLI::App& app);
 void add_version_command(CLI::App& app);
-void add_later_commands(CLI::App& app);  ///< render, view: listed, but not in this version
+void add_view_command(CLI::App& app, int& exit_code);
+void add_later_commands(CLI::App& app);  ///< render: listed, but not in this version
 
 }  // namespace lamella::app

@@ -61,7 +61,6 @@ void add_version_command(CLI::App& app) {
 
 void add_later_commands(CLI::App& app) {
     add_later_command(app, "render", "Render frames with ray tracing");
-    add_later_command(app, "view", "Show a run in the web browser");
 }
 
 }  // namespace lamella::app
