@@ -1,0 +1,144 @@
+// Balls, discs and particles: one square each that faces the eye, on which the fragment shader finds the ball. A hundred
+// thousand are no trouble, and they are round at any distance.
+import * as THREE from "three";
+import { STUDIO } from "./studio";
+
+const VERTEX = /* glsl */ `
+attribute vec3 center;
+attribute float radius;
+attribute float value;
+uniform float scale;
+uniform bool flat2d;
+uniform vec4 clip;
+varying vec2 vAt;
+varying vec3 vWorld;
+varying vec3 vCenter;
+varying float vRadius;
+varying float vValue;
+void main() {
+  vAt = position.xy;
+  vCenter = center;
+  vRadius = radius * scale;
+  vValue = value;
+  vec3 right = vec3(1.0, 0.0, 0.0);
+  vec3 up = vec3(0.0, 1.0, 0.0);
+  float reach = 1.0;
+  if (!flat2d) {
+    // The outline of a ball seen from near is larger than its radius.
+    vec3 toEye = cameraPosition - center;
+    float distance = length(toEye);
+    vec3 z = toEye / distance;
+    right = normalize(cross(abs(z.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), z));
+    up = cross(z, right);
+    float ratio = min(vRadius / distance, 0.95);
+    reach = 1.0 / sqrt(1.0 - ratio * ratio);
+  }
+  vWorld = center + vRadius * reach * (right * position.x + up * position.y);
+  gl_Position = projectionMatrix * viewMatrix * vec4(vWorld, 1.0);
+  if (dot(center, clip.xyz) > clip.w) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside of what is drawn
+}
+`;
+
+const FRAGMENT = /* glsl */ `
+uniform sampler2D map;
+uniform vec2 range;
+uniform bool flat2d;
+uniform bool byField;
+uniform mat4 viewProjection;
+varying vec2 vAt;
+varying vec3 vWorld;
+varying vec3 vCenter;
+varying float vRadius;
+varying float vValue;
+${STUDIO}
+
+vec3 base() {
+  if (!byField) return vec3(0.35, 0.5, 0.6);
+  if (!(vValue >= -3.0e38 && vValue <= 3.0e38)) return vec3(0.12);
+  float x = clamp((vValue - range.x) / max(range.y - range.x, 1e-30), 0.0, 1.0);
+  return texture2D(map, vec2(x * 255.0 / 256.0 + 0.5 / 256.0, 0.5)).rgb;
+}
+
+void main() {
+  vec3 color = base();
+  if (flat2d) {
+    float r = length(vAt);
+    float soft = fwidth(r);
+    float inside = 1.0 - smoothstep(1.0 - soft, 1.0, r);
+    if (inside <= 0.0) discard;
+    float rim = smoothstep(0.86 - soft, 0.96, r);
+    gl_FragColor = vec4(color * mix(1.0, 0.45, rim) * inside, inside);
+    gl_FragDepth = gl_FragCoord.z;
+    return;
+  }
+  vec3 ray = normalize(vWorld - cameraPosition);
+  vec3 toCenter = vCenter - cameraPosition;
+  float along = dot(ray, toCenter);
+  vec3 miss = toCenter - along * ray;
+  float half2 = vRadius * vRadius - dot(miss, miss);
+  if (half2 <= 0.0) discard;
+  vec3 hit = cameraPosition + (along - sqrt(half2)) * ray;
+  vec3 n = (hit - vCenter) / vRadius;
+  float cosine = clamp(-dot(n, ray), 0.0, 1.0);
+  float edge = pow(1.0 - cosine, 4.0);
+  vec3 light = color * (0.42 + 0.38 * n.y + 0.35 * cosine) + (0.025 + 0.22 * edge) * studio(reflect(ray, n));
+  gl_FragColor = vec4(light, 1.0);
+  vec4 projected = viewProjection * vec4(hit, 1.0);
+  gl_FragDepth = 0.5 + 0.5 * projected.z / projected.w;
+}
+`;
+
+export class Balls {
+  readonly object: THREE.Mesh<THREE.InstancedBufferGeometry, THREE.ShaderMaterial>;
+  private readonly viewProjection = new THREE.Matrix4();
+
+  constructor(map: THREE.Texture, clip: THREE.Vector4) {
+    const material = new THREE.ShaderMaterial({
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      side: THREE.DoubleSide,
+      blending: THREE.CustomBlending,
+      blendSrc: THREE.OneFactor,
+      blendDst: THREE.OneMinusSrcAlphaFactor,
+      transparent: true,
+      uniforms: {
+        scale: { value: 1 },
+        flat2d: { value: false },
+        byField: { value: false },
+        clip: { value: clip },
+        map: { value: map },
+        range: { value: new THREE.Vector2(0, 1) },
+        viewProjection: { value: this.viewProjection },
+      },
+    });
+    this.object = new THREE.Mesh(new THREE.InstancedBufferGeometry(), material);
+    this.object.frustumCulled = false;
+    this.object.renderOrder = 1;
+    this.object.onBeforeRender = (_renderer, _scene, camera) => {
+      this.viewProjection.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+      material.uniformsNeedUpdate = true;
+    };
+  }
+
+  show(position: Float32Array | null, radius: Float32Array, values: Float32Array | null, range: { low: number; high: number } | null, flat: boolean): void {
+    this.object.geometry.dispose();
+    this.object.visible = position !== null;
+    if (!position) return;
+    const geometry = new THREE.InstancedBufferGeometry();
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0], 3));
+    geometry.setIndex([0, 1, 2, 0, 2, 3]);
+    geometry.setAttribute("center", new THREE.InstancedBufferAttribute(position, 3));
+    geometry.setAttribute("radius", new THREE.InstancedBufferAttribute(radius, 1));
+    geometry.setAttribute("value", new THREE.InstancedBufferAttribute(values ?? new Float32Array(radius.length), 1));
+    geometry.instanceCount = radius.length;
+    this.object.geometry = geometry;
+    const uniforms = this.object.material.uniforms;
+    const set = (name: string, value: unknown): void => {
+      const uniform = uniforms[name];
+      if (uniform) uniform.value = value;
+    };
+    set("flat2d", flat);
+    set("byField", values !== null);
+    set("range", new THREE.Vector2(range?.low ?? 0, range?.high ?? 1));
+  }
+}

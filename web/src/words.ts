@@ -1,0 +1,30 @@
+// Numbers and names as people read them.
+
+const SUPERSCRIPT: Record<string, string> = { "-": "⁻", "0": "⁰", "1": "¹", "2": "²", "3": "³", "4": "⁴", "5": "⁵", "6": "⁶", "7": "⁷", "8": "⁸", "9": "⁹" };
+
+const raised = (digits: string): string => [...digits].map((c) => SUPERSCRIPT[c] ?? c).join("");
+
+/// "m^2/s" -> "m²/s"; nothing for a pure number.
+export function unitText(unit: string): string {
+  return unit === "-" ? "" : unit.replace(/\^(-?\d+)/g, (_, digits: string) => raised(digits)).replace(/ /g, "\u202f");
+}
+
+/// Three or four digits, powers of ten where there would be many zeros.
+export function numberText(value: number | null, digits = 4): string {
+  if (value === null || Number.isNaN(value)) return "unknown";
+  if (value === 0) return "0";
+  if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
+  const size = Math.abs(value);
+  if (Number.isInteger(value) && size < 1e6) return value.toString().replace("-", "−");
+  if (size >= 1e-3 && size < 1e5) return String(Number(value.toPrecision(digits))).replace("-", "−");
+  const [mantissa = "", exponent = ""] = value.toExponential(digits - 2).split("e");
+  return `${String(Number(mantissa)).replace("-", "−")}·10${raised(exponent.replace("+", ""))}`;
+}
+
+export function quantityText(value: number | null, unit: string, digits = 4): string {
+  const text = numberText(value, digits);
+  return unitText(unit) === "" || text === "unknown" ? text : `${text}\u202f${unitText(unit)}`;
+}
+
+/// "mean_radius" -> "mean radius".
+export const nameText = (name: string): string => name.replace(/_/g, " ");
