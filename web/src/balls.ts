@@ -81,7 +81,7 @@ void main() {
   vec3 n = (hit - vCenter) / vRadius;
   float cosine = clamp(-dot(n, ray), 0.0, 1.0);
   float edge = pow(1.0 - cosine, 4.0);
-  vec3 light = color * (0.42 + 0.38 * n.y + 0.35 * cosine) + (0.025 + 0.22 * edge) * studio(reflect(ray, n));
+  vec3 light = color * (0.42 + 0.38 * n.y + 0.35 * cosine) + (0.025 + 0.22 * edge) * studio(mat3(viewMatrix) * reflect(ray, n));
   gl_FragColor = vec4(light, 1.0);
   vec4 projected = viewProjection * vec4(hit, 1.0);
   gl_FragDepth = 0.5 + 0.5 * projected.z / projected.w;

@@ -2,17 +2,17 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { SeriesPart } from "./api";
-import { nameText, numberText, unitText } from "./words";
+import { nameText, tickTexts, unitText } from "./words";
 
 const FAVORITES = ["energy", "mean_radius", "energy_surface", "surface_energy", "total_area", "bubbles", "volume_error"];
 const CHARTS = 2;
-const HEIGHT = 132;
+const HEIGHT = 126;
 const COLORS = ["#8fc7e8", "#f0b775"];
 
 export class Charts {
   private columns: SeriesPart["columns"] = [];
   private data: (number | null)[][] = []; // per column
-  private readonly plots: { select: HTMLSelectElement; place: HTMLElement; plot: uPlot | null; color: string }[] = [];
+  private readonly plots: { select: HTMLSelectElement; place: HTMLElement; caption: HTMLElement; plot: uPlot | null; color: string }[] = [];
   private time = 0;
 
   constructor(list: HTMLElement, private readonly onTime: (time: number) => void) {
@@ -22,9 +22,11 @@ export class Charts {
       const select = document.createElement("select");
       select.setAttribute("aria-label", `What chart ${i + 1} shows`);
       const place = document.createElement("div");
-      block.append(select, place);
+      const caption = document.createElement("div");
+      caption.className = "caption";
+      block.append(select, caption, place);
       list.append(block);
-      const chart = { select, place, plot: null, color: COLORS[i] ?? "#fff" };
+      const chart = { select, place, caption, plot: null, color: COLORS[i] ?? "#fff" };
       this.plots.push(chart);
       select.addEventListener("change", () => this.rebuild());
     }
@@ -79,8 +81,16 @@ export class Charts {
           cursor: { y: false, drag: { x: false, y: false }, sync: { key: "lamella" } },
           scales: { x: { time: false } },
           axes: [
-            { ...axis, values: (_, ticks) => ticks.map((t) => numberText(t, 3)), size: 26 },
-            { ...axis, values: (_, ticks) => ticks.map((t, i) => (i === ticks.length - 1 ? `${numberText(t, 3)} ${unitText(column.unit)}` : numberText(t, 3))), size: 78 },
+            { ...axis, values: (_, ticks, _axis, _space, step) => tickTexts(ticks, step).texts, size: 26 },
+            {
+              ...axis,
+              size: 58,
+              values: (_, ticks, _axis, _space, step) => {
+                const { texts, factor } = tickTexts(ticks, step);
+                chart.caption.textContent = [factor, unitText(column.unit)].filter((part) => part !== "").join(" ");
+                return texts;
+              },
+            },
           ],
           series: [{}, { stroke: chart.color, width: 1.6, points: { show: this.rows < 30, size: 4 } }],
           hooks: { draw: [(plot) => this.drawTime(plot)] },

@@ -267,8 +267,11 @@ export function decodeFrame(buffer: ArrayBuffer): Frame {
 export interface ColorTable {
   thicknesses: number;
   cosines: number;
-  largestThickness: number; // [nm]
-  thin: Float32Array; // rows of cosines, each with `thicknesses` linear sRGB colors
+  maxThickness: number; // [nm]
+  index: number; // refractive
+  // Rows of cosines v^2, each with linear sRGB colors at u^2 maxThickness, u and v even from 0 to 1: of films with
+  // thickness sqrt(1 - (1 - cosine^2) / index^2) = u^2 maxThickness.
+  thin: Float32Array;
   thick: Float32Array; // one color a cosine
 }
 
@@ -277,11 +280,21 @@ export function decodeColors(buffer: ArrayBuffer): ColorTable {
   const table: ColorTable = {
     thicknesses: whole(message.header["thicknesses"], "thicknesses"),
     cosines: whole(message.header["cosines"], "cosines"),
-    largestThickness: number(message.header["largest_thickness_nm"], "largest_thickness_nm"),
+    maxThickness: number(message.header["max_thickness_nm"], "max_thickness_nm"),
+    index: number(message.header["reference_index"], "reference_index"),
     thin: need(message, "colors", "thin", 3, Float32Array),
     thick: need(message, "colors", "thick", 3, Float32Array),
   };
   if (table.thicknesses < 2 || table.cosines < 2 || table.thin.length !== 3 * table.thicknesses * table.cosines || table.thick.length !== 3 * table.cosines)
     wrong("the table of colors has another shape");
   return table;
+}
+
+/// What a film reflects of light that falls on it at right angles, linear sRGB.
+export function headOn(table: ColorTable, nm: number): [number, number, number] {
+  const row = table.thicknesses * (table.cosines - 1);
+  const at = Math.sqrt(Math.min(Math.max(nm / table.maxThickness, 0), 1)) * (table.thicknesses - 1);
+  const low = Math.min(Math.floor(at), table.thicknesses - 2);
+  const entry = (i: number, k: number): number => table.thin[3 * (row + i) + k] ?? 0;
+  return [0, 1, 2].map((k) => entry(low, k) * (low + 1 - at) + entry(low + 1, k) * (at - low)) as [number, number, number];
 }

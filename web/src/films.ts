@@ -27,7 +27,8 @@ uniform float thickness;        // where there is none [nm]
 uniform sampler2D thin;         // thickness x cosine
 uniform sampler2D thick;        // 1 x cosine
 uniform vec2 tableSize;
-uniform float largestThickness; // of the table [nm]
+uniform float maxThickness;     // of the table [nm]
+uniform float index;            // refractive
 uniform sampler2D map;
 uniform vec2 range;
 uniform float opacity;
@@ -40,10 +41,10 @@ ${STUDIO}
 
 // What a film of this thickness reflects of white light, linear sRGB: centers of texels are the table's nodes.
 vec3 reflected(float nm, float cosine) {
-  float row = (cosine * (tableSize.y - 1.0) + 0.5) / tableSize.y;
-  float column = (min(nm / largestThickness, 1.0) * (tableSize.x - 1.0) + 0.5) / tableSize.x;
-  vec3 inTable = texture2D(thin, vec2(column, row)).rgb;
-  return mix(inTable, texture2D(thick, vec2(0.5, row)).rgb, smoothstep(0.93, 1.0, nm / largestThickness));
+  float counted = max(nm, 0.0) * sqrt(1.0 - (1.0 - cosine * cosine) / (index * index)) / maxThickness;
+  float row = (sqrt(cosine) * (tableSize.y - 1.0) + 0.5) / tableSize.y;
+  if (counted > 1.0) return texture2D(thick, vec2(0.5, row)).rgb;
+  return texture2D(thin, vec2((sqrt(counted) * (tableSize.x - 1.0) + 0.5) / tableSize.x, row)).rgb;
 }
 
 bool unknown(float x) { return !(x >= -3.0e38 && x <= 3.0e38); }
@@ -63,7 +64,7 @@ void main() {
   }
   float nm = hasThickness && !unknown(vValue) ? vValue : thickness;
   vec3 r = reflected(nm, cosine);
-  vec3 light = r * studio(reflect(-toEye, n)) + vPicked * vec3(0.05, 0.07, 0.10) * (1.2 - cosine);
+  vec3 light = r * studio(mat3(viewMatrix) * reflect(-toEye, n)) + vPicked * vec3(0.05, 0.07, 0.10) * (1.2 - cosine);
   float covered = clamp(dot(r, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0);
   gl_FragColor = vec4(light, covered);
 }
@@ -100,7 +101,8 @@ export class FilmMesh {
         thin: { value: halfTexture(table.thin, table.thicknesses, table.cosines) },
         thick: { value: halfTexture(table.thick, 1, table.cosines) },
         tableSize: { value: new THREE.Vector2(table.thicknesses, table.cosines) },
-        largestThickness: { value: table.largestThickness },
+        maxThickness: { value: table.maxThickness },
+        index: { value: table.index },
         map: { value: map },
         range: { value: new THREE.Vector2(0, 1) },
         opacity: { value: 1 },

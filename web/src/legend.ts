@@ -1,23 +1,27 @@
 // What the colors mean.
 import { cssGradient } from "./colormap";
-import { ColorTable } from "./decode";
+import { ColorTable, headOn } from "./decode";
 import { Range } from "./field";
 import { nameText, numberText, quantityText, unitText } from "./words";
 
 const encode = (x: number): number => Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
 
-/// A strip of what films of 0 to `table.largestThickness` reflect head-on, ten times brighter than it is.
+/// The thickest film of the scale [nm]; beyond, colors are faint.
+const SCALE_END = 1500;
+const SCALE_PIXELS = 600;
+const BRIGHTER = 9; // a film reflects a few percent of the light
+
+/// A strip of what films of 0 to SCALE_END reflect head-on.
 export function thicknessStrip(table: ColorTable): HTMLCanvasElement {
   const canvas = document.createElement("canvas");
-  canvas.width = table.thicknesses;
+  canvas.width = SCALE_PIXELS;
   canvas.height = 1;
   canvas.className = "strip";
   const context = canvas.getContext("2d");
   if (!context) return canvas;
-  const pixels = context.createImageData(table.thicknesses, 1);
-  const row = 3 * table.thicknesses * (table.cosines - 1);
-  for (let i = 0; i < table.thicknesses; ++i) {
-    const color = [0, 1, 2].map((k) => 9 * (table.thin[row + 3 * i + k] ?? 0));
+  const pixels = context.createImageData(SCALE_PIXELS, 1);
+  for (let i = 0; i < SCALE_PIXELS; ++i) {
+    const color = headOn(table, (SCALE_END * i) / (SCALE_PIXELS - 1)).map((c) => BRIGHTER * c);
     const gray = 0.2126 * color[0]! + 0.7152 * color[1]! + 0.0722 * color[2]!;
     const lowest = Math.min(...color);
     const highest = Math.max(...color);
@@ -44,9 +48,9 @@ const span = (text: string): HTMLElement => {
   return element;
 };
 
-export function filmLegend(place: HTMLElement, strip: HTMLElement, largest: number, shown: Range): void {
+export function filmLegend(place: HTMLElement, strip: HTMLElement, shown: Range): void {
   const mark = document.createElement("i");
-  const percent = (nm: number): number => 100 * Math.min(nm / largest, 1);
+  const percent = (nm: number): number => 100 * Math.min(nm / SCALE_END, 1);
   mark.style.left = `calc(${percent(shown.low)}% - 1px)`;
   mark.style.width = `${percent(shown.high) - percent(shown.low)}%`;
   const text = shown.high - shown.low < 0.5 ? numberText(shown.low, 3) : `${numberText(shown.low, 3)} – ${numberText(shown.high, 3)}`;
@@ -54,7 +58,7 @@ export function filmLegend(place: HTMLElement, strip: HTMLElement, largest: numb
     line("name", `Film thickness ${text} nm`),
     strip,
     line("mark", mark),
-    line("ticks", span("0"), span(`${largest / 2}`), span(`${largest} nm`)),
+    line("ticks", span("0"), span(`${SCALE_END / 2}`), span(`${SCALE_END} nm`)),
   );
 }
 

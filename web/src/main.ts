@@ -1,7 +1,7 @@
 // The page: joins the parts, and what people click, press and touch to them.
 import { api, Region, State } from "./api";
 import { Charts } from "./charts";
-import { ColorTable, Frame } from "./decode";
+import { Frame } from "./decode";
 import { defaultColoring, fieldKey, FILM_COLORS, findField, magnitudes, Range, rangeOf } from "./field";
 import { fieldLegend, filmLegend, thicknessStrip } from "./legend";
 import { byId, dictionary, Message } from "./page";
@@ -26,7 +26,6 @@ const cut = byId<HTMLInputElement>("cut");
 const scrub = byId<HTMLInputElement>("scrub");
 
 let stage: Stage | null = null;
-let table: ColorTable | null = null;
 let strip: HTMLCanvasElement | null = null;
 let state: State | null = null;
 let frame: Frame | null = null;
@@ -61,7 +60,7 @@ function redraw(): void {
   const legend = byId("legend");
   legend.hidden = !field && !frame.films;
   if (field) fieldLegend(legend, field.name, field.unit, field.components, range);
-  else if (strip && table) filmLegend(legend, strip, table.largestThickness, thicknessRange(frame));
+  else if (strip) filmLegend(legend, strip, thicknessRange(frame));
   stage?.show(frame, look());
   stage?.cut(cutAxis.value === "" ? null : (Number(cutAxis.value) as 0 | 1 | 2), Number(cut.value));
 }
@@ -98,8 +97,8 @@ function subtitle(of: Frame): string {
 function showTime(index: number, time: number, unit: string): void {
   const text = byId("time");
   const strong = document.createElement("b");
-  strong.textContent = quantityText(time, unit);
-  text.replaceChildren(strong, `  frame ${index} of ${Math.max(player.count - 1, 0)}`);
+  strong.textContent = unit === "-" ? `time ${numberText(time)}` : quantityText(time, unit);
+  text.replaceChildren(strong, ` · frame ${index} of ${Math.max(player.count - 1, 0)}`);
   scrub.setAttribute("aria-valuetext", `${strong.textContent}, frame ${index}`);
 }
 
@@ -369,7 +368,7 @@ async function showProvenance(): Promise<void> {
 async function start(): Promise<void> {
   listen();
   try {
-    table = await api.colors();
+    const table = await api.colors();
     strip = thicknessStrip(table);
     stage = new Stage(byId<HTMLCanvasElement>("view"), table, () => message.show("picture", "The graphics card gave up the picture; load the page again."));
   } catch (error) {

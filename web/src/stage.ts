@@ -208,6 +208,14 @@ export class Stage {
     this.boxLines.position.set(...box.origin).addScaledVector(size, 0.5);
   }
 
+  /// The part of the height that title and legend leave free, from the bottom.
+  private freeShare(): { low: number; high: number } {
+    const titles = 64; // [px]
+    const legends = 96;
+    const height = Math.max(this.canvas.clientHeight, 2 * (titles + legends));
+    return { low: legends / height, high: 1 - titles / height };
+  }
+
   /// The whole frame into view: from the front and a little above, a flat one from above.
   fit(): void {
     if (this.bounds.isEmpty()) return;
@@ -215,8 +223,12 @@ export class Stage {
     const size = this.bounds.getSize(new THREE.Vector3());
     const flat = this.frame?.box?.dimension === 2;
     const half = Math.tan((this.camera.fov * Math.PI) / 360);
-    const widest = flat ? Math.max(size.y, size.x / this.camera.aspect) / 2 : size.length() / 2 / Math.min(1, this.camera.aspect);
-    const distance = ((flat ? 1.06 : 0.92) * widest) / (flat ? half : Math.sin(Math.atan(half)));
+    const room = this.freeShare();
+    const widest = flat
+      ? Math.max(size.y / (room.high - room.low), size.x / this.camera.aspect) / 2
+      : size.length() / 2 / Math.min(1, this.camera.aspect);
+    const distance = ((flat ? 1.03 : 0.92) * widest) / (flat ? half : Math.sin(Math.atan(half)));
+    if (flat) center.y += distance * half * (1 - room.high - room.low); // to the middle of the free part
     const from = flat ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3(0.35, 0.28, 1).normalize();
     this.controls.target.copy(center);
     this.camera.position.copy(center).addScaledVector(from, Math.max(distance, 1e-9));

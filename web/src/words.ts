@@ -28,3 +28,15 @@ export function quantityText(value: number | null, unit: string, digits = 4): st
 
 /// "mean_radius" -> "mean radius".
 export const nameText = (name: string): string => name.replace(/_/g, " ");
+
+/// Labels of an axis with as many digits as its steps need, and the power of ten that they share.
+export function tickTexts(ticks: number[], step: number): { texts: string[]; factor: string } {
+  const largest = Math.max(...ticks.map(Math.abs));
+  const exponent = largest === 0 ? 0 : Math.floor(Math.log10(largest));
+  const shared = exponent < -2 || exponent > 4 ? exponent : 0;
+  const scaledStep = step / 10 ** shared;
+  const decimals = Math.min(Math.max(0, Math.ceil(-Math.log10(scaledStep) - 1e-9)), 8);
+  const finer = Math.abs(scaledStep * 10 ** decimals - Math.round(scaledStep * 10 ** decimals)) > 1e-6 ? decimals + 1 : decimals;
+  const texts = ticks.map((t) => (t / 10 ** shared).toFixed(finer).replace("-", "−"));
+  return { texts, factor: shared === 0 ? "" : `10${raised(String(shared))}` };
+}

@@ -4,9 +4,9 @@
 
 namespace lamella::app::view {
 
-/// What soap films reflect under white light (D65), as a message (message.h) with one array `colors`: rows of cosines of
-/// the angle of incidence from 0 to 1, each with thicknesses from 0 to `largest_thickness_nm` in equal steps; linear
-/// sRGB, not limited to [0, 1], 1 being the white of the light. `thick` has one row of the limit of thick films.
+/// The table of optics::FilmColorTable as a message (message.h), as the page's shader looks it up: the arrays `thin`
+/// (`cosines` rows of `thicknesses` colors) and `thick` (the limit, one color a cosine), linear sRGB beyond [0, 1] too,
+/// with `max_thickness_nm` and `reference_index`. The table's header says where its entries lie.
 std::string color_message();
 
 }  // namespace lamella::app::view

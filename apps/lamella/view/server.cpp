@@ -12,6 +12,8 @@
 #include "view/run_view.h"
 #include <charconv>
 #include <exception>
+#include <functional>
+#include <mutex>
 #include <optional>
 #include <random>
 #include <thread>
@@ -66,6 +68,8 @@ struct Server::Impl {
     const RunView& run;
     std::string token;
     int port = 0;
+    std::once_flag colors_made;
+    std::string colors;  ///< of the first request for them on
     httplib::Server http;
     std::thread thread;
 
@@ -118,7 +122,10 @@ struct Server::Impl {
         });
         get("/api/scene", kText, [this](const Request&) { return run.scene(); });
         get("/api/provenance", kJson, [this](const Request&) { return run.provenance(); });
-        get("/api/colors", kBinary, [](const Request&) { return color_message(); });
+        get("/api/colors", kBinary, [this](const Request&) {
+            std::call_once(colors_made, [this] { colors = color_message(); });
+            return colors;
+        });
         const auto frame_of = [](const Request& request) {
             const auto index = whole_number(request.matches[1]);
             if (!index) throw InputError("that is no number of a frame");
