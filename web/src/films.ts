@@ -80,7 +80,19 @@ function halfTexture(values: Float32Array, width: number, height: number): THREE
   return texture;
 }
 
+function middles(films: Films): Float32Array {
+  const result = new Float32Array(films.corners.length);
+  for (let i = 0; i < result.length; i += 3)
+    for (let c = 0; c < 3; ++c)
+      for (let k = 0; k < 3; ++k) result[i + k]! += films.position[3 * films.corners[i + c]! + k]! / 3;
+  return result;
+}
+
+const DEPTHS = 4096; // that films are sorted into
+
 export class FilmMesh {
+  private middles: Float32Array = new Float32Array(0); // of the triangles
+  private corners: Uint32Array = new Uint32Array(0); // of the triangles, in the frame's order
   readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>;
 
   constructor(table: ColorTable, map: THREE.Texture, clip: THREE.Vector4) {
@@ -135,16 +147,48 @@ export class FilmMesh {
     const normals = new THREE.InterleavedBuffer(films.normal, 4);
     shared.setAttribute("normal", new THREE.InterleavedBufferAttribute(normals, 3, 0, true));
     shared.setAttribute("regions", new THREE.BufferAttribute(Float32Array.from(films.regions), 2));
-    shared.setIndex(new THREE.BufferAttribute(films.corners, 1));
+    this.corners = films.corners;
+    this.middles = middles(films);
     if (!perTriangle) {
+      geometry.setIndex(new THREE.BufferAttribute(films.corners.slice(), 1));
       geometry.setAttribute("value", new THREE.BufferAttribute(values ?? new Float32Array(vertices), 1));
       return;
     }
+    shared.setIndex(new THREE.BufferAttribute(films.corners, 1));
     const own = shared.toNonIndexed();
+    this.corners = Uint32Array.from({ length: films.corners.length }, (_, i) => i);
+    geometry.setIndex(new THREE.BufferAttribute(this.corners.slice(), 1));
     for (const name of ["position", "normal", "regions"]) geometry.setAttribute(name, own.getAttribute(name));
     const spread = new Float32Array(films.corners.length);
     for (let i = 0; i < spread.length; ++i) spread[i] = values?.[Math.floor(i / 3)] ?? 0;
     geometry.setAttribute("value", new THREE.BufferAttribute(spread, 1));
+  }
+
+  /// Films that let light through are drawn from the farthest to the nearest. `forward`: where the eye looks.
+  sort(forward: THREE.Vector3): void {
+    const index = this.object.geometry.index;
+    if (!index || this.object.material.depthWrite) return;
+    const count = this.middles.length / 3;
+    const depth = new Float32Array(count);
+    let low = Infinity;
+    let high = -Infinity;
+    for (let i = 0; i < count; ++i) {
+      const d = forward.x * this.middles[3 * i]! + forward.y * this.middles[3 * i + 1]! + forward.z * this.middles[3 * i + 2]!;
+      depth[i] = d;
+      if (d < low) low = d;
+      if (d > high) high = d;
+    }
+    const scale = (DEPTHS - 1) / Math.max(high - low, 1e-30);
+    const starts = new Uint32Array(DEPTHS + 1);
+    const bucket = (i: number): number => Math.floor((high - depth[i]!) * scale);
+    for (let i = 0; i < count; ++i) ++starts[bucket(i) + 1]!;
+    for (let b = 0; b < DEPTHS; ++b) starts[b + 1]! += starts[b]!;
+    const sorted = index.array as Uint32Array;
+    for (let i = 0; i < count; ++i) {
+      const at = 3 * starts[bucket(i)]!++;
+      for (let k = 0; k < 3; ++k) sorted[at + k] = this.corners[3 * i + k]!;
+    }
+    index.needsUpdate = true;
   }
 
   colorByFilm(hasThickness: boolean, thicknessNm: number): void {

@@ -83,6 +83,8 @@ export class Stage {
   private readonly balls: Balls;
   private readonly boxLines = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x6c7a90, transparent: true, opacity: 0.35 }));
   private readonly bounds = new THREE.Box3();
+  private readonly forward = new THREE.Vector3();
+  private extent = 1; // largest distance from the middle of the bounds
   private frame: Frame | null = null;
   private shown: { frame: Frame; coloring: string } | null = null;
   private radius: Float32Array = new Float32Array(0);
@@ -144,6 +146,7 @@ export class Stage {
 
   private draw(): void {
     this.dirty = false;
+    if (this.films.object.visible) this.films.sort(this.camera.getWorldDirection(this.forward));
     this.renderer.setRenderTarget(this.target);
     this.renderer.clear();
     this.renderer.render(this.scene, this.camera);
@@ -197,6 +200,10 @@ export class Stage {
       this.bounds.expandByPoint(point.fromArray(frame.box.origin));
       this.bounds.expandByPoint(point.fromArray(frame.box.origin.map((x, k) => x + (frame.box?.lengths[k] ?? 0))));
     }
+    const center = this.bounds.getCenter(new THREE.Vector3());
+    this.extent = frame.box ? this.bounds.getSize(point).length() / 2 : 0;
+    for (const positions of [frame.films?.position, frame.points?.position])
+      for (let i = 0; positions && i < positions.length; i += 3) this.extent = Math.max(this.extent, point.fromArray(positions, i).distanceTo(center));
   }
 
   private showBox(box: Box | null): void {
@@ -226,8 +233,8 @@ export class Stage {
     const room = this.freeShare();
     const widest = flat
       ? Math.max(size.y / (room.high - room.low), size.x / this.camera.aspect) / 2
-      : size.length() / 2 / Math.min(1, this.camera.aspect);
-    const distance = ((flat ? 1.03 : 0.92) * widest) / (flat ? half : Math.sin(Math.atan(half)));
+      : this.extent / Math.min(1, this.camera.aspect);
+    const distance = ((flat ? 1.03 : 1.12) * widest) / (flat ? half : Math.sin(Math.atan(half)));
     if (flat) center.y += distance * half * (1 - room.high - room.low); // to the middle of the free part
     const from = flat ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3(0.35, 0.28, 1).normalize();
     this.controls.target.copy(center);
