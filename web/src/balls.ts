@@ -15,7 +15,10 @@ varying vec3 vWorld;
 varying vec3 vCenter;
 varying float vRadius;
 varying float vValue;
+varying float vPicked;
+uniform int picked;
 void main() {
+  vPicked = gl_InstanceID == picked ? 1.0 : 0.0;
   vAt = position.xy;
   vCenter = center;
   vRadius = radius * scale;
@@ -50,6 +53,7 @@ varying vec3 vWorld;
 varying vec3 vCenter;
 varying float vRadius;
 varying float vValue;
+varying float vPicked;
 ${STUDIO}
 
 vec3 base() {
@@ -67,7 +71,8 @@ void main() {
     float inside = 1.0 - smoothstep(1.0 - soft, 1.0, r);
     if (inside <= 0.0) discard;
     float rim = smoothstep(0.86 - soft, 0.96, r);
-    gl_FragColor = vec4(color * mix(1.0, 0.45, rim) * inside, inside);
+    vec3 edge = mix(color * 0.45, vec3(1.0), vPicked);
+    gl_FragColor = vec4(mix(color, edge, rim) * inside, inside);
     gl_FragDepth = gl_FragCoord.z;
     return;
   }
@@ -82,6 +87,7 @@ void main() {
   float cosine = clamp(-dot(n, ray), 0.0, 1.0);
   float edge = pow(1.0 - cosine, 4.0);
   vec3 light = color * (0.42 + 0.38 * n.y + 0.35 * cosine) + (0.025 + 0.22 * edge) * studio(mat3(viewMatrix) * reflect(ray, n));
+  light += vPicked * (0.08 + 0.9 * smoothstep(0.55, 0.25, cosine));
   gl_FragColor = vec4(light, 1.0);
   vec4 projected = viewProjection * vec4(hit, 1.0);
   gl_FragDepth = 0.5 + 0.5 * projected.z / projected.w;
@@ -105,6 +111,7 @@ export class Balls {
         scale: { value: 1 },
         flat2d: { value: false },
         byField: { value: false },
+        picked: { value: -1 },
         clip: { value: clip },
         map: { value: map },
         range: { value: new THREE.Vector2(0, 1) },
@@ -118,6 +125,11 @@ export class Balls {
       this.viewProjection.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
       material.uniformsNeedUpdate = true;
     };
+  }
+
+  pick(index: number): void {
+    const uniform = this.object.material.uniforms["picked"];
+    if (uniform) uniform.value = index;
   }
 
   show(position: Float32Array | null, radius: Float32Array, values: Float32Array | null, range: { low: number; high: number } | null, flat: boolean): void {

@@ -31,7 +31,7 @@ let state: State | null = null;
 let frame: Frame | null = null;
 let shownIndex = -1;
 let range: Range | null = null; // of the colors
-let picked: Pick = null;
+let picked: { kind: "region"; region: number } | { kind: "ball"; index: number; id: number | null } | null = null;
 let following = false;
 
 // ---- what is shown ----
@@ -150,9 +150,19 @@ const charts = new Charts(byId("chart-list"), (time) => {
 
 let regionsOf: { index: number; regions: Region[] } | null = null;
 
+const idsOf = (of: Frame): Float32Array | undefined => of.fields.find((f) => f.place === "points" && f.name === "id")?.values;
+
+/// Where the ball is among this frame's, or -1: balls that have ids are followed by them, others by their place in the list.
+function ballOf(of: Frame, ball: { index: number; id: number | null }): number {
+  const ids = idsOf(of);
+  if (ids && ball.id !== null) return ids.indexOf(ball.id);
+  return ball.index < (of.points?.position.length ?? 0) / 3 ? ball.index : -1;
+}
+
 async function showPicked(): Promise<void> {
   const place = byId("picked-text");
-  stage?.highlight(picked?.kind === "region" ? picked.region : 0);
+  const ball = picked?.kind === "ball" && frame ? ballOf(frame, picked) : -1;
+  stage?.highlight(picked?.kind === "region" ? picked.region : 0, ball);
   if (!picked || !frame) {
     const hint = document.createElement("p");
     hint.className = "hint";
@@ -161,10 +171,13 @@ async function showPicked(): Promise<void> {
     return;
   }
   if (picked.kind === "ball") {
-    const index = picked.index;
+    if (ball < 0) {
+      place.textContent = "This bubble is not there at this time.";
+      return;
+    }
     const rows = frame.fields
       .filter((f) => f.place === "points")
-      .map((f): [string, string] => [nameText(f.name) + (f.components > 1 ? " (magnitude)" : ""), quantityText(magnitudes(f)[index] ?? null, f.unit)]);
+      .map((f): [string, string] => [nameText(f.name) + (f.components > 1 ? " (magnitude)" : ""), quantityText(magnitudes(f)[ball] ?? null, f.unit)]);
     place.replaceChildren(dictionary(rows));
     return;
   }
@@ -339,7 +352,8 @@ function listenToPicks(): void {
   canvas.addEventListener("pointerdown", (event) => (from = event.isPrimary ? { x: event.clientX, y: event.clientY } : null));
   canvas.addEventListener("pointerup", (event) => {
     if (!from || Math.hypot(event.clientX - from.x, event.clientY - from.y) > 5) return;
-    picked = stage?.pick(event.clientX, event.clientY) ?? null;
+    const hit: Pick = stage?.pick(event.clientX, event.clientY) ?? null;
+    picked = hit?.kind === "ball" ? { ...hit, id: (frame && idsOf(frame)?.[hit.index]) ?? null } : hit;
     void showPicked();
   });
 }

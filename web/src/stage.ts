@@ -218,7 +218,7 @@ export class Stage {
   /// The part of the height that title and legend leave free, from the bottom.
   private freeShare(): { low: number; high: number } {
     const titles = 64; // [px]
-    const legends = 96;
+    const legends = 100;
     const height = Math.max(this.canvas.clientHeight, 2 * (titles + legends));
     return { low: legends / height, high: 1 - titles / height };
   }
@@ -279,8 +279,10 @@ export class Stage {
     return null;
   }
 
-  highlight(region: number): void {
+  /// Marks a bubble: a region (0: none) or a ball (-1: none).
+  highlight(region: number, ball: number): void {
     this.films.pick(region);
+    this.balls.pick(ball);
     this.dirty = true;
   }
 

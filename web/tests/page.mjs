@@ -182,6 +182,10 @@ const tests = {
       text = await page.locator("#picked-text").innerText();
     }
     assert.match(text, /radius\s+\d/);
+    const id = /\bid\s+(\d+)/.exec(text)[1];
+    await page.keyboard.press("End"); // others have gone by then: the bubble is followed by its id, not by its place
+    await atFrame(page, Number(await page.locator("#scrub").getAttribute("max")));
+    assert.match(await page.locator("#picked-text").innerText(), new RegExp(`\\bid\\s+${id}\\b|not there at this time`));
     const phone = await open(address, { width: 390, height: 780 }, true);
     await atFrame(phone, 0);
     assert.equal(await phone.evaluate(() => document.documentElement.scrollWidth), 390, "the page is wider than the phone");
