@@ -1,13 +1,12 @@
-// Balls, discs and particles: one square each that faces the eye, on which the fragment shader finds the ball. A hundred
-// thousand are no trouble, and they are round at any distance.
+// Balls, discs and particles: one square each that faces the eye, on which the fragment shader finds the ball, round at any
+// distance. What differs from ball to ball lies in textures and the corners of the squares number themselves: a hundred
+// thousand instances of a square are slow where there is no graphics card (3.5 s a picture with SwiftShader).
 import * as THREE from "three";
 import { STUDIO } from "./studio";
 
 const VERTEX = /* glsl */ `
-attribute vec3 center;
-attribute float radius;
-attribute float value;
-uniform float scale;
+uniform highp sampler2D balls;   // center, radius
+uniform highp sampler2D values;
 uniform bool flat2d;
 uniform vec4 clip;
 varying vec2 vAt;
@@ -18,11 +17,16 @@ varying float vValue;
 varying float vPicked;
 uniform int picked;
 void main() {
-  vPicked = gl_InstanceID == picked ? 1.0 : 0.0;
-  vAt = position.xy;
+  int ball = gl_VertexID / 4;
+  ivec2 texel = ivec2(ball % WIDTH, ball / WIDTH);
+  vec4 its = texelFetch(balls, texel, 0);
+  vec3 center = its.xyz;
+  vec2 corner = vec2((gl_VertexID & 1) * 2 - 1, (gl_VertexID & 2) - 1);
+  vPicked = ball == picked ? 1.0 : 0.0;
+  vAt = corner;
   vCenter = center;
-  vRadius = radius * scale;
-  vValue = value;
+  vRadius = its.w;
+  vValue = texelFetch(values, texel, 0).r;
   vec3 right = vec3(1.0, 0.0, 0.0);
   vec3 up = vec3(0.0, 1.0, 0.0);
   float reach = 1.0;
@@ -36,7 +40,7 @@ void main() {
     float ratio = min(vRadius / distance, 0.95);
     reach = 1.0 / sqrt(1.0 - ratio * ratio);
   }
-  vWorld = center + vRadius * reach * (right * position.x + up * position.y);
+  vWorld = center + vRadius * reach * (right * corner.x + up * corner.y);
   gl_Position = projectionMatrix * viewMatrix * vec4(vWorld, 1.0);
   if (dot(center, clip.xyz) > clip.w) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside of what is drawn
 }
@@ -94,12 +98,21 @@ void main() {
 }
 `;
 
+const WIDTH = 1024; // of the textures
+
+function dataTexture(values: Float32Array<ArrayBuffer>, height: number, format: THREE.PixelFormat): THREE.DataTexture {
+  const texture = new THREE.DataTexture(values, WIDTH, height, format, THREE.FloatType);
+  texture.needsUpdate = true;
+  return texture;
+}
+
 export class Balls {
-  readonly object: THREE.Mesh<THREE.InstancedBufferGeometry, THREE.ShaderMaterial>;
+  readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>;
   private readonly viewProjection = new THREE.Matrix4();
 
   constructor(map: THREE.Texture, clip: THREE.Vector4) {
     const material = new THREE.ShaderMaterial({
+      defines: { WIDTH },
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
       side: THREE.DoubleSide,
@@ -108,7 +121,8 @@ export class Balls {
       blendDst: THREE.OneMinusSrcAlphaFactor,
       transparent: true,
       uniforms: {
-        scale: { value: 1 },
+        balls: { value: null },
+        values: { value: null },
         flat2d: { value: false },
         byField: { value: false },
         picked: { value: -1 },
@@ -118,7 +132,7 @@ export class Balls {
         viewProjection: { value: this.viewProjection },
       },
     });
-    this.object = new THREE.Mesh(new THREE.InstancedBufferGeometry(), material);
+    this.object = new THREE.Mesh(new THREE.BufferGeometry(), material);
     this.object.frustumCulled = false;
     this.object.renderOrder = 1;
     this.object.onBeforeRender = (_renderer, _scene, camera) => {
@@ -127,28 +141,44 @@ export class Balls {
     };
   }
 
+  private count = -1;
+
+  /// Two triangles a ball; the number of a corner says whose it is and which.
+  private setCount(count: number): void {
+    this.count = count;
+    const corners = new Uint32Array(6 * count);
+    for (let i = 0; i < count; ++i) corners.set([4 * i, 4 * i + 1, 4 * i + 3, 4 * i, 4 * i + 3, 4 * i + 2], 6 * i);
+    this.object.geometry.dispose();
+    this.object.geometry = new THREE.BufferGeometry();
+    this.object.geometry.setIndex(new THREE.BufferAttribute(corners, 1));
+  }
+
   pick(index: number): void {
     const uniform = this.object.material.uniforms["picked"];
     if (uniform) uniform.value = index;
   }
 
   show(position: Float32Array | null, radius: Float32Array, values: Float32Array | null, range: { low: number; high: number } | null, flat: boolean): void {
-    this.object.geometry.dispose();
-    this.object.visible = position !== null;
-    if (!position) return;
-    const geometry = new THREE.InstancedBufferGeometry();
-    geometry.setAttribute("position", new THREE.Float32BufferAttribute([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0], 3));
-    geometry.setIndex([0, 1, 2, 0, 2, 3]);
-    geometry.setAttribute("center", new THREE.InstancedBufferAttribute(position, 3));
-    geometry.setAttribute("radius", new THREE.InstancedBufferAttribute(radius, 1));
-    geometry.setAttribute("value", new THREE.InstancedBufferAttribute(values ?? new Float32Array(radius.length), 1));
-    geometry.instanceCount = radius.length;
-    this.object.geometry = geometry;
     const uniforms = this.object.material.uniforms;
     const set = (name: string, value: unknown): void => {
       const uniform = uniforms[name];
+      if (uniform?.value instanceof THREE.Texture && uniform.value !== value && name !== "map") uniform.value.dispose();
       if (uniform) uniform.value = value;
     };
+    this.object.visible = position !== null;
+    if (!position) return;
+    const count = radius.length;
+    const height = Math.max(1, Math.ceil(count / WIDTH));
+    const balls = new Float32Array(4 * WIDTH * height);
+    for (let i = 0; i < count; ++i) {
+      for (let k = 0; k < 3; ++k) balls[4 * i + k] = position[3 * i + k]!;
+      balls[4 * i + 3] = radius[i]!;
+    }
+    const shown = new Float32Array(WIDTH * height);
+    if (values) shown.set(values);
+    set("balls", dataTexture(balls, height, THREE.RGBAFormat));
+    set("values", dataTexture(shown, height, THREE.RedFormat));
+    if (this.count !== count) this.setCount(count);
     set("flat2d", flat);
     set("byField", values !== null);
     set("range", new THREE.Vector2(range?.low ?? 0, range?.high ?? 1));

@@ -31,6 +31,7 @@ export class Charts {
       select.addEventListener("change", () => this.rebuild());
     }
     new ResizeObserver(() => {
+      if (this.plots.some(({ plot }) => plot === null)) this.rebuild(); // there was no room for them before
       for (const { plot, place } of this.plots) if (plot && place.clientWidth > 0) plot.setSize({ width: place.clientWidth, height: HEIGHT });
     }).observe(list);
   }

@@ -7,7 +7,7 @@ import { fieldLegend, filmLegend, thicknessStrip } from "./legend";
 import { byId, dictionary, Message } from "./page";
 import { Player } from "./player";
 import { Look, Pick, Stage } from "./stage";
-import { nameText, numberText, quantityText } from "./words";
+import { countText, nameText, numberText, quantityText } from "./words";
 import "./page.css";
 
 const PLAY = '<svg viewBox="0 0 16 16"><path d="M4 2.5 13.5 8 4 13.5z"/></svg>';
@@ -81,16 +81,16 @@ function showNumbers(of: Frame): void {
     ["step", numberText(of.step)],
     ...of.scalars.map((s): [string, string] => [nameText(s.name), quantityText(s.value, s.unit)]),
   ];
-  if (of.triangles.all > 0) rows.push(["triangles", numberText(of.triangles.all)]);
-  if (of.pointCount.all > 0) rows.push(["balls and particles", numberText(of.pointCount.all)]);
+  if (of.triangles.all > 0) rows.push(["triangles", countText(of.triangles.all)]);
+  if (of.pointCount.all > 0) rows.push(["balls and particles", countText(of.pointCount.all)]);
   byId("numbers-text").replaceChildren(dictionary(rows));
 }
 
 /// What was left out so that the picture stays fluent is said.
 function subtitle(of: Frame): string {
   const parts = [state?.solver ?? of.solver, state?.folder ?? ""];
-  if (of.triangles.shown < of.triangles.all) parts.push(`${numberText(of.triangles.shown)} of ${numberText(of.triangles.all)} triangles shown`);
-  if (of.pointCount.shown < of.pointCount.all) parts.push(`${numberText(of.pointCount.shown)} of ${numberText(of.pointCount.all)} points shown`);
+  if (of.triangles.shown < of.triangles.all) parts.push(`${countText(of.triangles.shown)} of ${countText(of.triangles.all)} triangles shown`);
+  if (of.pointCount.shown < of.pointCount.all) parts.push(`${countText(of.pointCount.shown)} of ${countText(of.pointCount.all)} points shown`);
   return parts.filter((p) => p !== "").join(" · ");
 }
 
@@ -251,6 +251,7 @@ async function poll(): Promise<void> {
     else if (player.count > 0 && shownIndex < 0 && first === false && !message.visible) void player.show(0);
     if (frame) showTime(shownIndex, frame.time, frame.timeUnit);
     charts.add(await api.series(anew ? 0 : charts.rows));
+    byId("charts").hidden = charts.rows === 0;
   } catch (error) {
     failed = true;
     message.show("server", (error as Error).message);

@@ -7,6 +7,7 @@ import { Box, ColorTable, Frame } from "./decode";
 import { FILM_COLORS, findField, magnitudes, Range } from "./field";
 import { FilmMesh } from "./films";
 import { Tubes } from "./lines";
+import { Pace } from "./pace";
 import { pickBall, pickRegion, Plane, Ray } from "./picking";
 
 export interface Look {
@@ -72,6 +73,9 @@ const NOTHING_CUT = [0, 0, 0, 1e30] as const;
 export class Stage {
   private readonly renderer: THREE.WebGLRenderer;
   private readonly target: THREE.WebGLRenderTarget;
+  private readonly coarse: THREE.WebGLRenderTarget; // for pictures that move, where that takes long
+  private readonly light: THREE.IUniform;
+  private readonly pace = new Pace();
   private readonly scene = new THREE.Scene();
   private readonly screen = new THREE.Scene();
   private readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 100);
@@ -101,6 +105,8 @@ export class Stage {
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // the last pass encodes
     this.renderer.autoClear = false;
     this.target = new THREE.WebGLRenderTarget(1, 1, { type: THREE.HalfFloatType, samples: 4 });
+    this.coarse = new THREE.WebGLRenderTarget(1, 1, { type: THREE.HalfFloatType });
+    this.light = { value: this.target.texture };
     canvas.addEventListener("webglcontextlost", onLost);
 
     const map = mapTexture();
@@ -111,19 +117,20 @@ export class Stage {
     const background = fullScreen(BACKGROUND);
     background.renderOrder = -1;
     this.scene.add(background, this.films.object, this.borders.object, this.wires.object, this.balls.object, this.boxLines);
-    this.screen.add(fullScreen(SCREEN, { light: { value: this.target.texture } }));
+    this.screen.add(fullScreen(SCREEN, { light: this.light }));
 
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.12;
     this.controls.addEventListener("change", () => (this.dirty = true));
     new ResizeObserver(() => this.resize()).observe(canvas);
-    const loop = (): void => {
+    const loop = (now: number): void => {
       requestAnimationFrame(loop);
       this.controls.update();
-      if (this.dirty) this.draw();
+      const sharpness = this.pace.next(now, this.dirty);
+      if (sharpness !== null) this.draw(sharpness);
     };
-    loop();
+    requestAnimationFrame(loop);
   }
 
   private resize(): void {
@@ -144,10 +151,13 @@ export class Stage {
   }
   private readonly fittedAt = new THREE.Vector3();
 
-  private draw(): void {
+  private draw(sharpness: number): void {
     this.dirty = false;
+    const target = sharpness === 1 ? this.target : this.coarse;
+    if (sharpness < 1) target.setSize(Math.ceil(sharpness * this.target.width), Math.ceil(sharpness * this.target.height));
+    this.light.value = target.texture;
     if (this.films.object.visible) this.films.sort(this.camera.getWorldDirection(this.forward));
-    this.renderer.setRenderTarget(this.target);
+    this.renderer.setRenderTarget(target);
     this.renderer.clear();
     this.renderer.render(this.scene, this.camera);
     this.renderer.setRenderTarget(null);
@@ -287,7 +297,7 @@ export class Stage {
   }
 
   picture(): Promise<Blob> {
-    this.draw(); // in the same task as reading it: the buffer is not kept
+    this.draw(1); // in the same task as reading it: the buffer is not kept
     return new Promise((resolve, reject) =>
       this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the browser could not make a picture"))), "image/png"),
     );

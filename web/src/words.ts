@@ -26,6 +26,9 @@ export function quantityText(value: number | null, unit: string, digits = 4): st
   return unitText(unit) === "" || text === "unknown" ? text : `${text}\u202f${unitText(unit)}`;
 }
 
+/// 1008600 -> "1,008,600".
+export const countText = (count: number): string => count.toLocaleString("en-US");
+
 /// "mean_radius" -> "mean radius".
 export const nameText = (name: string): string => name.replace(/_/g, " ");
 

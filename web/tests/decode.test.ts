@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { DecodeError, decodeColors, decodeFrame, decodeMessage, headOn } from "../src/decode";
 import { numberText, quantityText, tickTexts, unitText } from "../src/words";
 import { pickBall, pickRegion, Plane } from "../src/picking";
+import { Pace } from "../src/pace";
 import { magnitudes, rangeOf } from "../src/field";
 
 type Typed = Float32Array | Uint32Array | Int32Array | Int8Array;
@@ -164,4 +165,18 @@ test("numbers are written as people read them", () => {
 test("unknown values do not count in a range", () => {
   assert.deepEqual(rangeOf(Float32Array.of(NaN, 2, -1)), { low: -1, high: 2 });
   assert.equal(rangeOf(Float32Array.of(NaN)), null);
+});
+
+test("pictures that take long are coarse while they move and sharp at rest", () => {
+  const pace = new Pace();
+  assert.equal(pace.next(0, false), null);
+  let now = 0;
+  let sharpness: number | null = 1;
+  for (let i = 0; i < 20; ++i) sharpness = pace.next((now += 200), true);
+  assert.equal(sharpness, 0.25);
+  assert.equal(pace.next((now += 16), false), null);
+  assert.equal(pace.next((now += 400), false), 1);
+  assert.equal(pace.next((now += 16), false), null);
+  for (let i = 0; i < 20; ++i) sharpness = pace.next((now += 16), true);
+  assert.equal(sharpness, 1);
 });
