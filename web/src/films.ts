@@ -1,6 +1,7 @@
 // The films: their interference colors times what they reflect, or a field.
 import * as THREE from "three";
 import { ColorTable, Films } from "./decode";
+import { farthestFirst } from "./depth_order";
 import { STUDIO } from "./studio";
 
 const VERTEX = /* glsl */ `
@@ -88,8 +89,6 @@ function middles(films: Films): Float32Array {
   return result;
 }
 
-const DEPTHS = 4096; // that films are sorted into
-
 export class FilmMesh {
   private middles: Float32Array = new Float32Array(0); // of the triangles
   private corners: Uint32Array = new Uint32Array(0); // of the triangles, in the frame's order
@@ -168,26 +167,7 @@ export class FilmMesh {
   sort(forward: THREE.Vector3): void {
     const index = this.object.geometry.index;
     if (!index || this.object.material.depthWrite) return;
-    const count = this.middles.length / 3;
-    const depth = new Float32Array(count);
-    let low = Infinity;
-    let high = -Infinity;
-    for (let i = 0; i < count; ++i) {
-      const d = forward.x * this.middles[3 * i]! + forward.y * this.middles[3 * i + 1]! + forward.z * this.middles[3 * i + 2]!;
-      depth[i] = d;
-      if (d < low) low = d;
-      if (d > high) high = d;
-    }
-    const scale = (DEPTHS - 1) / Math.max(high - low, 1e-30);
-    const starts = new Uint32Array(DEPTHS + 1);
-    const bucket = (i: number): number => Math.floor((high - depth[i]!) * scale);
-    for (let i = 0; i < count; ++i) ++starts[bucket(i) + 1]!;
-    for (let b = 0; b < DEPTHS; ++b) starts[b + 1]! += starts[b]!;
-    const sorted = index.array as Uint32Array;
-    for (let i = 0; i < count; ++i) {
-      const at = 3 * starts[bucket(i)]!++;
-      for (let k = 0; k < 3; ++k) sorted[at + k] = this.corners[3 * i + k]!;
-    }
+    farthestFirst(this.corners, this.middles, forward, index.array as Uint32Array);
     index.needsUpdate = true;
   }
 

@@ -76,6 +76,8 @@ export class Stage {
   private readonly coarse: THREE.WebGLRenderTarget; // for pictures that move, where that takes long
   private readonly light: THREE.IUniform;
   private readonly pace = new Pace();
+  private readonly gl: WebGL2RenderingContext;
+  private drawing: { fence: WebGLSync | null; began: number; sharpness: number } | null = null;
   private readonly scene = new THREE.Scene();
   private readonly screen = new THREE.Scene();
   private readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 100);
@@ -102,6 +104,7 @@ export class Stage {
     } catch {
       throw new Error("this browser has no WebGL 2, which the picture needs; charts and texts work");
     }
+    this.gl = this.renderer.getContext() as WebGL2RenderingContext;
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // the last pass encodes
     this.renderer.autoClear = false;
     this.target = new THREE.WebGLRenderTarget(1, 1, { type: THREE.HalfFloatType, samples: 4 });
@@ -127,10 +130,24 @@ export class Stage {
     const loop = (now: number): void => {
       requestAnimationFrame(loop);
       this.controls.update();
+      if (this.isBusy(now)) return;
       const sharpness = this.pace.next(now, this.dirty);
-      if (sharpness !== null) this.draw(sharpness);
+      if (sharpness === null) return;
+      this.draw(sharpness);
+      this.drawing = { fence: this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0), began: now, sharpness };
     };
     requestAnimationFrame(loop);
+  }
+
+  /// Whether the last picture is not done yet: another one would only wait behind it, and what people do with it.
+  private isBusy(now: number): boolean {
+    if (!this.drawing) return false;
+    const { fence, began, sharpness } = this.drawing;
+    if (fence && this.gl.clientWaitSync(fence, 0, 0) === this.gl.TIMEOUT_EXPIRED) return true;
+    this.gl.deleteSync(fence);
+    this.drawing = null;
+    this.pace.drawn(now - began, sharpness);
+    return false;
   }
 
   private resize(): void {

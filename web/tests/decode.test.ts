@@ -5,6 +5,7 @@ import { DecodeError, decodeColors, decodeFrame, decodeMessage, headOn } from ".
 import { numberText, quantityText, tickTexts, unitText } from "../src/words";
 import { pickBall, pickRegion, Plane } from "../src/picking";
 import { Pace } from "../src/pace";
+import { farthestFirst } from "../src/depth_order";
 import { magnitudes, rangeOf } from "../src/field";
 
 type Typed = Float32Array | Uint32Array | Int32Array | Int8Array;
@@ -167,16 +168,38 @@ test("unknown values do not count in a range", () => {
   assert.equal(rangeOf(Float32Array.of(NaN)), null);
 });
 
-test("pictures that take long are coarse while they move and sharp at rest", () => {
+test("a run of pictures that take long is coarse, and sharp again at rest", () => {
   const pace = new Pace();
   assert.equal(pace.next(0, false), null);
-  let now = 0;
-  let sharpness: number | null = 1;
-  for (let i = 0; i < 20; ++i) sharpness = pace.next((now += 200), true);
-  assert.equal(sharpness, 0.25);
-  assert.equal(pace.next((now += 16), false), null);
-  assert.equal(pace.next((now += 400), false), 1);
-  assert.equal(pace.next((now += 16), false), null);
-  for (let i = 0; i < 20; ++i) sharpness = pace.next((now += 16), true);
-  assert.equal(sharpness, 1);
+  assert.equal(pace.next(10, true), 1);
+  pace.drawn(4000, 1); // it took this long
+  assert.equal(pace.next(4010, true), 0.25);
+  pace.drawn(40, 0.25);
+  assert.equal(pace.next(4060, false), null);
+  assert.equal(pace.next(4500, false), 1);
+  pace.drawn(4000, 1);
+  assert.equal(pace.next(9000, false), null);
+  assert.equal(pace.next(9100, true), 0.25);
+  for (let i = 0; i < 5; ++i) pace.drawn(16, pace.next(9100 + 16 * i, true) ?? 0); // a small picture now
+  assert.equal(pace.next(9200, true), 1);
+});
+
+test("films are drawn from the farthest to the nearest, and none is lost", () => {
+  const count = 1000;
+  const middles = new Float32Array(3 * count);
+  for (let i = 0; i < middles.length; ++i) middles[i] = Math.sin(12.9898 * i) * (i % 3 === 0 ? 1 : 0.01);
+  const corners = Uint32Array.from({ length: 3 * count }, (_, i) => i);
+  for (let turn = 0; turn < 12; ++turn) {
+    const forward = { x: 0.8 * Math.cos(turn), y: 0.8 * Math.sin(turn), z: 0.6 };
+    const sorted = new Uint32Array(3 * count);
+    farthestFirst(corners, middles, forward, sorted);
+    assert.deepEqual([...sorted].sort((a, b) => a - b), [...corners]);
+    let before = Infinity;
+    for (let i = 0; i < 3 * count; i += 3) {
+      const at = sorted[i]!;
+      const depth = forward.x * middles[at]! + forward.y * middles[at + 1]! + forward.z * middles[at + 2]!;
+      assert.ok(depth < before + 2e-3, `${depth} after ${before}`);
+      before = depth;
+    }
+  }
 });
