@@ -9,6 +9,7 @@ import { FilmMesh } from "./films";
 import { Tubes } from "./lines";
 import { Pace } from "./pace";
 import { pickBall, pickRegion, Plane, Ray } from "./picking";
+import { Axes, defaultAxes, distanceToFit } from "./viewpoint";
 
 export interface Look {
   coloring: string; // FILM_COLORS or a field's key
@@ -68,12 +69,13 @@ function fullScreen(fragmentShader: string, uniforms: Record<string, THREE.IUnif
   return mesh;
 }
 
+const MARGIN = 1.06; // around what is fitted into the view
 const NOTHING_CUT = [0, 0, 0, 1e30] as const;
 
 export class Stage {
   private readonly renderer: THREE.WebGLRenderer;
   private readonly target: THREE.WebGLRenderTarget;
-  private readonly coarse: THREE.WebGLRenderTarget; // for pictures that move, where that takes long
+  private readonly plain: THREE.WebGLRenderTarget; // without multisampling: for slow pictures that move, and for balls
   private readonly light: THREE.IUniform;
   private readonly pace = new Pace();
   private readonly gl: WebGL2RenderingContext;
@@ -90,7 +92,6 @@ export class Stage {
   private readonly boxLines = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x6c7a90, transparent: true, opacity: 0.35 }));
   private readonly bounds = new THREE.Box3();
   private readonly forward = new THREE.Vector3();
-  private extent = 1; // largest distance from the middle of the bounds
   private frame: Frame | null = null;
   private shown: { frame: Frame; coloring: string } | null = null;
   private radius: Float32Array = new Float32Array(0);
@@ -108,7 +109,7 @@ export class Stage {
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // the last pass encodes
     this.renderer.autoClear = false;
     this.target = new THREE.WebGLRenderTarget(1, 1, { type: THREE.HalfFloatType, samples: 4 });
-    this.coarse = new THREE.WebGLRenderTarget(1, 1, { type: THREE.HalfFloatType });
+    this.plain = new THREE.WebGLRenderTarget(1, 1, { type: THREE.HalfFloatType });
     this.light = { value: this.target.texture };
     canvas.addEventListener("webglcontextlost", onLost);
 
@@ -122,6 +123,7 @@ export class Stage {
     this.scene.add(background, this.films.object, this.borders.object, this.wires.object, this.balls.object, this.boxLines);
     this.screen.add(fullScreen(SCREEN, { light: this.light }));
 
+    this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.12;
@@ -158,7 +160,8 @@ export class Stage {
     const pixels = this.renderer.getDrawingBufferSize(new THREE.Vector2());
     this.target.setSize(pixels.x, pixels.y);
     this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    const { titles, legends } = this.taken();
+    this.camera.setViewOffset(width, height, 0, 0.5 * (legends - titles), width, height); // to the middle of what is free
     if (this.frame && !this.touched) this.fit();
     this.dirty = true;
   }
@@ -170,8 +173,9 @@ export class Stage {
 
   private draw(sharpness: number): void {
     this.dirty = false;
-    const target = sharpness === 1 ? this.target : this.coarse;
-    if (sharpness < 1) target.setSize(Math.ceil(sharpness * this.target.width), Math.ceil(sharpness * this.target.height));
+    // The edges of balls are the shader's: multisampling would double what 100,000 of them cost and change nothing.
+    const target = sharpness === 1 && this.films.object.visible ? this.target : this.plain;
+    if (target === this.plain) target.setSize(Math.ceil(sharpness * this.target.width), Math.ceil(sharpness * this.target.height));
     this.light.value = target.texture;
     if (this.films.object.visible) this.films.sort(this.camera.getWorldDirection(this.forward));
     this.renderer.setRenderTarget(target);
@@ -182,6 +186,7 @@ export class Stage {
   }
 
   show(frame: Frame, look: Look): void {
+    const isNew = this.frame !== frame;
     this.frame = frame;
     const flat = frame.box?.dimension === 2;
     const field = look.coloring === FILM_COLORS ? undefined : findField(frame, look.coloring);
@@ -207,8 +212,14 @@ export class Stage {
     this.controls.enableRotate = !flat;
     this.controls.mouseButtons.LEFT = flat ? THREE.MOUSE.PAN : THREE.MOUSE.ROTATE;
     this.controls.touches.ONE = flat ? THREE.TOUCH.PAN : THREE.TOUCH.ROTATE;
-    if (!this.fitted) this.fit();
+    if (!this.fitted || (isNew && !this.touched && this.outgrown())) this.fit();
     this.dirty = true;
+  }
+
+  /// Whether the frame is larger than the view was made for.
+  private outgrown(): boolean {
+    const [right, up, back] = [0, 1, 2].map((k) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, k).toArray());
+    return this.distanceToFit({ right: right!, up: up!, back: back! }) > this.camera.position.distanceTo(this.controls.target);
   }
 
   /// Of balls their own; particles without one are drawn small beside their distance from each other.
@@ -227,10 +238,6 @@ export class Stage {
       this.bounds.expandByPoint(point.fromArray(frame.box.origin));
       this.bounds.expandByPoint(point.fromArray(frame.box.origin.map((x, k) => x + (frame.box?.lengths[k] ?? 0))));
     }
-    const center = this.bounds.getCenter(new THREE.Vector3());
-    this.extent = frame.box ? this.bounds.getSize(point).length() / 2 : 0;
-    for (const positions of [frame.films?.position, frame.points?.position])
-      for (let i = 0; positions && i < positions.length; i += 3) this.extent = Math.max(this.extent, point.fromArray(positions, i).distanceTo(center));
   }
 
   private showBox(box: Box | null): void {
@@ -242,30 +249,30 @@ export class Stage {
     this.boxLines.position.set(...box.origin).addScaledVector(size, 0.5);
   }
 
-  /// The part of the height that title and legend leave free, from the bottom.
-  private freeShare(): { low: number; high: number } {
-    const titles = 64; // [px]
-    const legends = 100;
-    const height = Math.max(this.canvas.clientHeight, 2 * (titles + legends));
-    return { low: legends / height, high: 1 - titles / height };
+  /// What title and legend take of the height [px].
+  private taken(): { titles: number; legends: number } {
+    const share = Math.min(1, this.canvas.clientHeight / 400);
+    return { titles: 64 * share, legends: 84 * share };
   }
 
-  /// The whole frame into view: from the front and a little above, a flat one from above.
+  private distanceToFit(axes: Axes): number {
+    if (!this.frame) return 1;
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    const { titles, legends } = this.taken();
+    const tall = half * Math.max(0.2, 1 - (titles + legends) / Math.max(this.canvas.clientHeight, 1));
+    const center = this.bounds.getCenter(new THREE.Vector3()).toArray();
+    return Math.max(distanceToFit(this.frame, this.radius, center, axes, half * this.camera.aspect, tall), 1e-9);
+  }
+
+  /// The whole frame into view.
   fit(): void {
     if (this.bounds.isEmpty()) return;
-    const center = this.bounds.getCenter(new THREE.Vector3());
-    const size = this.bounds.getSize(new THREE.Vector3());
     const flat = this.frame?.box?.dimension === 2;
-    const half = Math.tan((this.camera.fov * Math.PI) / 360);
-    const room = this.freeShare();
-    const widest = flat
-      ? Math.max(size.y / (room.high - room.low), size.x / this.camera.aspect) / 2
-      : this.extent / Math.min(1, this.camera.aspect);
-    const distance = ((flat ? 1.03 : 1.12) * widest) / (flat ? half : Math.sin(Math.atan(half)));
-    if (flat) center.y += distance * half * (1 - room.high - room.low); // to the middle of the free part
-    const from = flat ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3(0.35, 0.28, 1).normalize();
-    this.controls.target.copy(center);
-    this.camera.position.copy(center).addScaledVector(from, Math.max(distance, 1e-9));
+    const axes = defaultAxes(flat);
+    const distance = MARGIN * this.distanceToFit(axes);
+    this.bounds.getCenter(this.controls.target);
+    this.camera.position.copy(this.controls.target).addScaledVector(new THREE.Vector3(...axes.back), distance);
+    if (flat) this.camera.position.y -= 1e-6 * distance; // the pole itself does not know where up is
     this.camera.near = distance / 100;
     this.camera.far = distance * 100;
     this.camera.updateProjectionMatrix();

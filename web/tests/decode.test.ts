@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { DecodeError, decodeColors, decodeFrame, decodeMessage, headOn } from "../src/decode";
 import { numberText, quantityText, tickTexts, unitText } from "../src/words";
 import { pickBall, pickRegion, Plane } from "../src/picking";
+import { Axes, defaultAxes, distanceToFit } from "../src/viewpoint";
 import { Pace } from "../src/pace";
 import { farthestFirst } from "../src/depth_order";
 import { magnitudes, rangeOf } from "../src/field";
@@ -202,4 +203,16 @@ test("films are drawn from the farthest to the nearest, and none is lost", () =>
       before = depth;
     }
   }
+});
+
+test("the whole frame fits into the view, from near as from far", () => {
+  const box = { dimension: 3, origin: [0, 0, 0], lengths: [2, 2, 2] };
+  const frame = decodeFrame(pack({ ...HEADER, box }, [{ set: "points", name: "position", components: 3, values: Float32Array.of(1, 1, 1) }]));
+  const front: Axes = { right: [1, 0, 0], up: [0, 0, 1], back: [0, -1, 0] };
+  // The near face of the box is one unit nearer than its middle; half of the picture at distance 1 is 0.5 wide, 0.25 tall.
+  assert.equal(distanceToFit(frame, Float32Array.of(0), [1, 1, 1], front, 0.5, 0.25), 1 + 1 / 0.25);
+  assert.equal(distanceToFit(frame, Float32Array.of(3), [1, 1, 1], front, 0.5, 0.25), 3 + 3 / 0.25);
+  const { right, up, back } = defaultAxes(false);
+  const cross = [up[1] * back[2] - up[2] * back[1], up[2] * back[0] - up[0] * back[2], up[0] * back[1] - up[1] * back[0]];
+  cross.forEach((x, k) => assert.ok(Math.abs(x - right[k]!) < 1e-15));
 });
