@@ -40,6 +40,12 @@ export class Charts {
     return this.data[0]?.length ?? 0;
   }
 
+  /// Whether there is anything to be seen over time: a relaxation has its start and its end at the same time.
+  get hasTime(): boolean {
+    const times = this.data[0] ?? [];
+    return times.length === 1 || times[0] !== times[times.length - 1];
+  }
+
   /// Rows of the server; those from `first` on are new. A run that was started anew has other rows: all are replaced.
   add(part: SeriesPart): void {
     const names = part.columns.map((c) => c.name).join();
@@ -86,9 +92,10 @@ export class Charts {
             {
               ...axis,
               size: 58,
+              space: 22,
               values: (_, ticks, _axis, _space, step) => {
                 const { texts, factor } = tickTexts(ticks, step);
-                chart.caption.textContent = [factor, unitText(column.unit)].filter((part) => part !== "").join(" ");
+                chart.caption.textContent = [factor, unitText(column.unit)].filter((part) => part !== "").join(" ") || "\u00a0";
                 return texts;
               },
             },

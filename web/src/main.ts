@@ -94,10 +94,14 @@ function subtitle(of: Frame): string {
   return parts.filter((p) => p !== "").join(" · ");
 }
 
-function showTime(index: number, time: number, unit: string): void {
+/// Films that come to rest do so at one time: first there is how they began, last how they are at rest.
+const isRelaxation = (of: State): boolean => of.frame_times.length > 1 && of.frame_times[0] === of.frame_times[of.frame_times.length - 1];
+
+function showTime(index: number, of: Frame): void {
   const text = byId("time");
   const strong = document.createElement("b");
-  strong.textContent = unit === "-" ? `time ${numberText(time)}` : quantityText(time, unit);
+  if (state && isRelaxation(state)) strong.textContent = index === 0 ? "the start" : `step ${countText(of.step)}`;
+  else strong.textContent = of.timeUnit === "-" ? `time ${numberText(of.time)}` : quantityText(of.time, of.timeUnit);
   text.replaceChildren(strong, ` · frame ${index} of ${Math.max(player.count - 1, 0)}`);
   scrub.setAttribute("aria-valuetext", `${strong.textContent}, frame ${index}`);
 }
@@ -114,7 +118,7 @@ const player = new Player(
     redraw();
     showNumbers(loaded);
     scrub.value = String(index);
-    showTime(index, loaded.time, loaded.timeUnit);
+    showTime(index, loaded);
     byId("subtitle").textContent = subtitle(loaded);
     charts.setTime(loaded.time);
     void showPicked();
@@ -243,15 +247,16 @@ async function poll(): Promise<void> {
     if (first) {
       following = going;
       showFollowing();
+      byId<HTMLDetailsElement>("numbers").open = isRelaxation(now); // instead of charts
       if (now.thickness !== null) thickness.value = String(Math.round(NM * now.thickness));
       if (!going && player.count === 0) byId("waiting").textContent = "This run has written no frames.";
     }
-    if (player.count > 0 && (first || anew)) void player.show(going ? player.count - 1 : 0);
+    if (player.count > 0 && (first || anew)) void player.show(going || isRelaxation(now) ? player.count - 1 : 0);
     else if (following && !player.playing && player.count - 1 !== player.index) void player.show(player.count - 1);
     else if (player.count > 0 && shownIndex < 0 && first === false && !message.visible) void player.show(0);
-    if (frame) showTime(shownIndex, frame.time, frame.timeUnit);
+    if (frame) showTime(shownIndex, frame);
     charts.add(await api.series(anew ? 0 : charts.rows));
-    byId("charts").hidden = charts.rows === 0;
+    byId("charts").hidden = charts.rows === 0 || !charts.hasTime;
   } catch (error) {
     failed = true;
     message.show("server", (error as Error).message);

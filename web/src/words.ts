@@ -6,7 +6,7 @@ const raised = (digits: string): string => [...digits].map((c) => SUPERSCRIPT[c]
 
 /// "m^2/s" -> "m²/s"; nothing for a pure number.
 export function unitText(unit: string): string {
-  return unit === "-" ? "" : unit.replace(/\^(-?\d+)/g, (_, digits: string) => raised(digits)).replace(/ /g, "\u202f");
+  return unit === "-" ? "" : unit === "deg" ? "°" : unit.replace(/\^(-?\d+)/g, (_, digits: string) => raised(digits)).replace(/ /g, "\u202f");
 }
 
 /// Three or four digits, powers of ten where there would be many zeros.
