@@ -6,6 +6,7 @@
 #include "films.h"
 #include "view/colors.h"
 #include "view/frame_message.h"
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -40,7 +41,9 @@ TEST(FrameMessage, HoldsWhatTheHeaderSays) {
     sim::Frame frame = three_sheets(4);
     frame.time = 0.25;
     frame.scalars.push_back({"energy", "J", std::numeric_limits<double>::quiet_NaN(), "of the films"});
-    const std::string bytes = frame_message(frame);
+    DetailLimits as_it_is;
+    as_it_is.smooth = 0;
+    const std::string bytes = frame_message(frame, as_it_is);
     EXPECT_EQ(bytes.substr(0, 4), "LMLA");
     EXPECT_EQ(number_at(bytes, 4), 1u);
     EXPECT_EQ(16u + number_at(bytes, 8) + number_at(bytes, 12), bytes.size());
@@ -54,6 +57,23 @@ TEST(FrameMessage, HoldsWhatTheHeaderSays) {
     for (std::size_t v = 0; v < height.size(); ++v) EXPECT_EQ(height[v], position[3 * v + 2]);
     EXPECT_EQ(floats(bytes, "face_fields", "sheet").size(), 96u);
     EXPECT_EQ(floats(bytes, "borders", "segment").size(), 4u * 6u);
+}
+
+TEST(FrameMessage, CutsCoarseFilmsIntoPiecesWithTheirValues) {
+    const std::string bytes = frame_message(three_sheets(4));  // 96 triangles, 16 pieces each
+    EXPECT_EQ(header_of(bytes).at("triangles").at("shown"), 96);
+    EXPECT_EQ(floats(bytes, "face_fields", "sheet").size(), 16u * 96u);
+    const std::vector<float> position = floats(bytes, "vertices", "position"), height = floats(bytes, "vertex_fields", "height");
+    ASSERT_EQ(position.size(), 3 * height.size());
+    for (std::size_t v = 0; v < height.size(); ++v) EXPECT_NEAR(height[v], position[3 * v + 2], 1e-6);  // single precision
+}
+
+TEST(FrameMessage, KeepsWholeNumbersWhole) {
+    sim::Frame frame = three_sheets(1);
+    sim::Field label{"label", "-", 1, true, {}};
+    for (std::size_t v = 0; v < frame.surface.position.size(); ++v) label.values.push_back(double(10 * v));
+    frame.surface.vertex_fields.push_back(label);
+    for (const float value : floats(frame_message(frame), "vertex_fields", "label")) EXPECT_EQ(std::fmod(value, 10.0f), 0.0f);
 }
 
 TEST(FrameMessage, ThinsOutAndSaysSo) {

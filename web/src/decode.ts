@@ -3,7 +3,7 @@
 
 export class DecodeError extends Error {}
 
-export type Values = Float32Array | Uint32Array | Int32Array | Int8Array;
+export type Values = Float32Array | Uint32Array | Int32Array | Int16Array;
 
 export interface MessageArray {
   set: string;
@@ -41,7 +41,7 @@ function text(value: unknown, name: string): string {
 }
 
 function view(type: string, buffer: ArrayBuffer, offset: number, length: number, room: number): Values {
-  const bytes = type === "i8" ? 1 : 4;
+  const bytes = type === "i16" ? 2 : 4;
   if (length * bytes > room) wrong("an array reaches beyond the end");
   if (offset % bytes !== 0) wrong("an array is not aligned");
   switch (type) {
@@ -51,8 +51,8 @@ function view(type: string, buffer: ArrayBuffer, offset: number, length: number,
       return new Uint32Array(buffer, offset, length);
     case "i32":
       return new Int32Array(buffer, offset, length);
-    case "i8":
-      return new Int8Array(buffer, offset, length);
+    case "i16":
+      return new Int16Array(buffer, offset, length);
     default:
       return wrong(`unknown type ${type}`);
   }
@@ -116,7 +116,7 @@ export interface Box {
 
 export interface Films {
   position: Float32Array; // 3 a vertex
-  normal: Int8Array; // 4 a vertex, 127 being 1
+  normal: Int16Array; // 4 a vertex, 32767 being 1
   regions: Int32Array; // 2 a vertex, the smaller first; the normal points into the second
   corners: Uint32Array; // 3 a triangle
   borders: Float32Array; // 6 a segment
@@ -170,7 +170,7 @@ function films(message: Message): Films | null {
   const count = position.length / 3;
   const result: Films = {
     position,
-    normal: need(message, "vertices", "normal", 4, Int8Array),
+    normal: need(message, "vertices", "normal", 4, Int16Array),
     regions: need(message, "vertices", "regions", 2, Int32Array),
     corners: need(message, "triangles", "corners", 3, Uint32Array),
     borders: need(message, "borders", "segment", 6, Float32Array),

@@ -17,7 +17,7 @@ vec3 studio(vec3 d) {
   float window = softBox(front, vec2(-0.72, 0.78), vec2(0.34, 0.42), 0.03);
   window *= 1.0 - 0.85 * softBox(front, vec2(-0.72, 0.78), vec2(0.018, 0.6), 0.012);
   window *= 1.0 - 0.85 * softBox(front, vec2(-0.72, 0.76), vec2(0.6, 0.018), 0.012);
-  light += side * 10.0 * window * vec3(1.0, 0.98, 0.95);
+  light += side * 7.5 * window * vec3(1.0, 0.98, 0.95);
   light += side * 5.0 * softBox(front, vec2(1.35, 0.15), vec2(0.16, 0.95), 0.12) * vec3(1.0, 0.92, 0.82);
   return light;
 }

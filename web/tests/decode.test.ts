@@ -9,7 +9,7 @@ import { Pace } from "../src/pace";
 import { farthestFirst } from "../src/depth_order";
 import { magnitudes, rangeOf } from "../src/field";
 
-type Typed = Float32Array | Uint32Array | Int32Array | Int8Array;
+type Typed = Float32Array | Uint32Array | Int32Array | Int16Array;
 interface Entry {
   set: string;
   name: string;
@@ -18,7 +18,7 @@ interface Entry {
   unit?: string;
 }
 
-const TYPES = new Map<unknown, string>([[Float32Array, "f32"], [Uint32Array, "u32"], [Int32Array, "i32"], [Int8Array, "i8"]]);
+const TYPES = new Map<unknown, string>([[Float32Array, "f32"], [Uint32Array, "u32"], [Int32Array, "i32"], [Int16Array, "i16"]]);
 
 function pack(header: Record<string, unknown>, entries: Entry[]): ArrayBuffer {
   let offset = 0;
@@ -44,7 +44,7 @@ const HEADER = { solver: "test", time: 0.5, time_unit: "s", step: 3, box: null, 
 // One triangle in the plane z = 0; its normal points up, into region 2.
 const triangle = (): Entry[] => [
   { set: "vertices", name: "position", components: 3, values: Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0), unit: "m" },
-  { set: "vertices", name: "normal", components: 4, values: Int8Array.of(0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0) },
+  { set: "vertices", name: "normal", components: 4, values: Int16Array.of(0, 0, 32767, 0, 0, 0, 32767, 0, 0, 0, 32767, 0) },
   { set: "vertices", name: "regions", components: 2, values: Int32Array.of(0, 2, 0, 2, 0, 2) },
   { set: "triangles", name: "corners", components: 3, values: Uint32Array.of(0, 1, 2) },
   { set: "borders", name: "segment", components: 6, values: new Float32Array(0) },

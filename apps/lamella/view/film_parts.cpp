@@ -51,19 +51,23 @@ struct Corner {
     }
 };
 
-/// Twice the triangle's area vector, pointing into the larger region of its film.
-Vec3 area_vector(const sim::Surface& surface, std::size_t f) {
-    const auto& [a, b, c] = surface.triangles[f];
-    const Vec3 n = cross(surface.position[b] - surface.position[a], surface.position[c] - surface.position[a]);
-    return surface.regions[f][0] <= surface.regions[f][1] ? n : -1.0 * n;
+/// What a triangle adds to the normal at its corner `at`, pointing into the larger region of its film. With these weights
+/// the normal of a vertex is exact where it and its neighbors lie on a sphere, as bubbles do nearly [Max99].
+Vec3 normal_part(const sim::Surface& surface, std::size_t f, std::size_t at) {
+    const auto& triangle = surface.triangles[f];
+    const Vec3& x = surface.position[triangle[at]];
+    const Vec3 e1 = surface.position[triangle[(at + 1) % 3]] - x, e2 = surface.position[triangle[(at + 2) % 3]] - x;
+    const double scale = squared_norm(e1) * squared_norm(e2);
+    if (!(scale > 0.0)) return {};
+    return (surface.regions[f][0] <= surface.regions[f][1] ? 1.0 : -1.0) / scale * cross(e1, e2);
 }
 
-void split_vertices(const sim::Surface& surface, const std::vector<std::uint32_t>& place, FilmParts& parts) {
+void split_vertices(const sim::Surface& surface, FilmParts& parts) {
     std::vector<Corner> corners;
     corners.reserve(3 * surface.triangles.size());
     for (std::uint32_t f = 0; f < surface.triangles.size(); ++f)
         for (std::uint32_t k = 0; k < 3; ++k)
-            corners.push_back({place[surface.triangles[f][k]], film_of(surface.regions[f]), f, k});
+            corners.push_back({parts.place[surface.triangles[f][k]], film_of(surface.regions[f]), f, k});
     std::ranges::sort(corners, std::less<>{});
 
     parts.triangles.resize(surface.triangles.size());
@@ -71,7 +75,7 @@ void split_vertices(const sim::Surface& surface, const std::vector<std::uint32_t
         const Corner& corner = corners[i];
         if (i == 0 || !corner.same_vertex(corners[i - 1]))
             parts.vertices.push_back({surface.triangles[corner.triangle][corner.at], corner.film, {}});
-        parts.vertices.back().normal += area_vector(surface, corner.triangle);
+        parts.vertices.back().normal += normal_part(surface, corner.triangle, corner.at);
         parts.triangles[corner.triangle][corner.at] = static_cast<std::uint32_t>(parts.vertices.size() - 1);
     }
     for (FilmParts::Vertex& vertex : parts.vertices) {
@@ -80,17 +84,17 @@ void split_vertices(const sim::Surface& surface, const std::vector<std::uint32_t
     }
 }
 
-void find_lines(const sim::Surface& surface, const std::vector<std::uint32_t>& place, FilmParts& parts) {
+void find_lines(const sim::Surface& surface, FilmParts& parts) {
     const sim::Field* on_wire = surface.find_of_vertices("on_wire");
     const auto wired = [&](std::uint32_t v) {
         return on_wire != nullptr && on_wire->components == 1 && v < on_wire->values.size() && on_wire->values[v] != 0.0;
     };
-    std::vector<std::array<std::uint32_t, 2>> edges;
+    std::vector<FilmParts::Ends> edges;
     edges.reserve(3 * surface.triangles.size());
     for (const auto& triangle : surface.triangles)
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t a = place[triangle[k]], b = place[triangle[(k + 1) % 3]];
-            edges.push_back({std::min(a, b), std::max(a, b)});
+            const std::uint32_t a = parts.place[triangle[k]], b = parts.place[triangle[(k + 1) % 3]];
+            if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
         }
     std::ranges::sort(edges);
     for (std::size_t begin = 0; begin < edges.size();) {
@@ -98,11 +102,10 @@ void find_lines(const sim::Surface& surface, const std::vector<std::uint32_t>& p
         while (end < edges.size() && edges[end] == edges[begin]) ++end;
         const auto& [a, b] = edges[begin];
         const std::size_t films = end - begin;
-        const FilmParts::Segment segment{surface.position[a], surface.position[b]};
         if (films == 1 || (films > 2 && wired(a) && wired(b)))
-            parts.wires.push_back(segment);
+            parts.wires.push_back(edges[begin]);
         else if (films > 2)
-            parts.borders.push_back(segment);
+            parts.borders.push_back(edges[begin]);
         begin = end;
     }
 }
@@ -112,9 +115,9 @@ void find_lines(const sim::Surface& surface, const std::vector<std::uint32_t>& p
 FilmParts film_parts(const sim::Surface& surface) {
     check(surface);
     FilmParts parts;
-    const std::vector<std::uint32_t> place = places(surface.position);
-    split_vertices(surface, place, parts);
-    find_lines(surface, place, parts);
+    parts.place = places(surface.position);
+    split_vertices(surface, parts);
+    find_lines(surface, parts);
     return parts;
 }
 

@@ -16,12 +16,13 @@ struct FilmParts {
         std::array<std::int32_t, 2> regions{};    ///< of its film, the smaller first
         Vec3 normal;                              ///< unit length, pointing into the larger of the two regions
     };
-    using Segment = std::array<Vec3, 2>;
+    using Ends = std::array<std::uint32_t, 2>;  ///< places of an edge, the smaller first
 
     std::vector<Vertex> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< in the frame's order
-    std::vector<Segment> borders;                         ///< edges where three films or more meet
-    std::vector<Segment> wires;                           ///< edges that hold a film: its rim, or a wire through films
+    std::vector<std::uint32_t> place;  ///< of the frame's vertices: the first one at the same place
+    std::vector<Ends> borders;         ///< edges where three films or more meet, in ascending order
+    std::vector<Ends> wires;           ///< edges that hold a film: its rim, or a wire through films; ascending too
 };
 
 /// Vertices at the same place count as one, so that a periodic foam, whose triangles share none, has borders too.

@@ -54,8 +54,8 @@ void Message::add(const std::string& set, const std::string& name, const std::st
 }
 
 void Message::add(const std::string& set, const std::string& name, const std::string& unit, int components,
-                  std::span<const std::int8_t> values) {
-    append("i8", set, name, unit, components, values);
+                  std::span<const std::int16_t> values) {
+    append("i16", set, name, unit, components, values);
 }
 
 std::string Message::finish(nlohmann::ordered_json header) const {

@@ -17,7 +17,7 @@ namespace lamella::app::view {
 ///   header       JSON; `arrays` lists {set, name, unit, type, components, count, offset}, offsets from the data's start
 ///   data         the arrays, little endian, each at a multiple of 4 bytes
 ///
-/// `type` is f32, u32, i32 or i8. docs/view.md has the table of sets; web/src/decode.ts reads it.
+/// `type` is f32, u32, i32 or i16. docs/view.md has the table of sets; web/src/decode.ts reads it.
 class Message {
 public:
     /// Appends an array of `components` values an item. `set` says what the items are: "vertices", "points", ...
@@ -28,7 +28,7 @@ public:
     void add(const std::string& set, const std::string& name, const std::string& unit, int components,
              std::span<const std::int32_t> values);
     void add(const std::string& set, const std::string& name, const std::string& unit, int components,
-             std::span<const std::int8_t> values);
+             std::span<const std::int16_t> values);
 
     /// The bytes, with `header` and the list of arrays in front.
     std::string finish(nlohmann::ordered_json header) const;
