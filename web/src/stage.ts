@@ -85,6 +85,7 @@ export class Stage {
   private readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 100);
   private readonly controls: OrbitControls;
   private readonly clip = new THREE.Vector4(...NOTHING_CUT);
+  private cutAxis: { axis: 0 | 1 | 2; side: 1 | -1 } | null = null;
   private readonly films: FilmMesh;
   private readonly borders: Tubes;
   private readonly wires: Tubes;
@@ -282,14 +283,19 @@ export class Stage {
     this.dirty = true;
   }
 
-  /// Cuts away what lies beyond `share` of the frame's extent along an axis; null: nothing.
+  /// Keeps `share` of the frame's extent along an axis, and cuts away the side that is now nearer to the eye; null: nothing.
   cut(axis: 0 | 1 | 2 | null, share: number): void {
     if (axis === null) {
+      this.cutAxis = null;
       this.clip.set(...NOTHING_CUT);
     } else {
+      if (axis !== this.cutAxis?.axis)
+        this.cutAxis = { axis, side: this.camera.position.getComponent(axis) < this.controls.target.getComponent(axis) ? -1 : 1 };
+      const { side } = this.cutAxis;
       const low = this.bounds.min.getComponent(axis);
       const high = this.bounds.max.getComponent(axis);
-      this.clip.set(0, 0, 0, low + share * (high - low)).setComponent(axis, 1);
+      const reach = share * (high - low);
+      this.clip.set(0, 0, 0, side > 0 ? low + reach : reach - high).setComponent(axis, side);
     }
     this.dirty = true;
   }

@@ -40,7 +40,7 @@ function view(...words) {
   });
 }
 
-async function open(address, size = { width: 1000, height: 640 }, phone = false) {
+async function open(address, size = { width: 800, height: 520 }, phone = false) {
   const page = await browser.newPage({ viewport: size, isMobile: phone, hasTouch: phone });
   page.faults = [];
   page.on("pageerror", (error) => page.faults.push(error.message));
@@ -48,7 +48,7 @@ async function open(address, size = { width: 1000, height: 640 }, phone = false)
   return page;
 }
 
-const atFrame = (page, index) => page.waitForSelector(`body[data-frame="${index}"]`, { state: "attached", timeout: 30000 });
+const atFrame = (page, index) => page.waitForSelector(`body[data-frame="${index}"]`, { state: "attached", timeout: 60000 });
 
 /// Mean color and mean saturation of a part of the picture, given as shares of its width and height.
 async function colors(page, left, top, width, height) {
@@ -98,7 +98,10 @@ async function until(words, value) {
 const tests = {
   async "films of 300 nm are in color, black films are dark"() {
     const colored = await open((await view(run("equilibrium/double-bubble-small", "films", "--set", "material.thickness=3e-7"))).address);
-    await atFrame(colored, 0);
+    await atFrame(colored, 1); // films at rest are shown at rest
+    assert.match(await colored.locator("#time").innerText(), /^step \d+ · frame 1 of 1/);
+    assert.equal(await colored.locator("#charts").isVisible(), false, "charts of one time");
+    assert.match(await colored.locator("#numbers-text").innerText(), /surface energy\s+\d/);
     const film = await colors(colored, ...MIDDLE);
     const behind = await ground(colored);
     assert.ok(film.saturation > 0.3, `a film of 300 nm is gray: ${JSON.stringify(film)}`);
@@ -217,7 +220,7 @@ const tests = {
   async "a run that the page started is followed, paused, resumed and stopped"() {
     const { address, server } = await view("bubble/coarsening-2d-small", "--out", join(folder, "live"), "--set", "time.end=1000", "--set", "time.frame_rate=4", "--set", "bubble.count=1500", "--set", "bubble.end_count=20");
     const page = await open(address);
-    await page.waitForSelector("body[data-frame]", { state: "attached", timeout: 30000 });
+    await page.waitForSelector("body[data-frame]", { state: "attached", timeout: 60000 });
     const shown = async () => Number(await page.locator("body").getAttribute("data-frame"));
     const first = await shown();
     await until("frames come by themselves", async () => (await shown()) >= first + 2);
@@ -229,7 +232,7 @@ const tests = {
     await page.locator("#run-state:has-text('interrupted')").waitFor({ timeout: 30000 });
     assert.ok(existsSync(join(folder, "live/checkpoint.h5")), "a stopped run has its checkpoint");
     const stranger = await open(new URL("/", address).href);
-    await stranger.waitForSelector("body[data-frame]", { state: "attached", timeout: 30000 });
+    await stranger.waitForSelector("body[data-frame]", { state: "attached", timeout: 60000 });
     assert.equal(await stranger.locator("#run-buttons").isVisible(), false);
     const ended = new Promise((resolve) => server.on("exit", resolve));
     server.kill("SIGINT");
