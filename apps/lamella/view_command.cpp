@@ -28,6 +28,7 @@ struct ViewOptions {
     int port = 0;
     std::string folder;
     std::vector<std::string> overrides;
+    std::vector<std::string> of_run;  ///< options that are handed on to the run as they are
     bool overwrite = false;
 };
 
@@ -52,6 +53,7 @@ std::unique_ptr<view::RunProcess> start_run(const ViewOptions& options, const st
                                    "run", scene.string(), "--out", folder, "--progress", "none"};
     for (const std::string& change : options.overrides) words.insert(words.end(), {"--set", change});
     if (options.overwrite) words.emplace_back("--overwrite");
+    words.insert(words.end(), options.of_run.begin(), options.of_run.end());
     return std::make_unique<view::RunProcess>(words);
 }
 
@@ -80,8 +82,9 @@ int view_command(const ViewOptions& options) {
     check_page();
     catch_stop_signals();
     if (run::is_run_folder(options.target)) {
-        if (!options.folder.empty() || !options.overrides.empty() || options.overwrite)
-            throw InputError(fmt::format("{} is a run already: --out, --set and --overwrite are for a scene", options.target));
+        if (!options.folder.empty() || !options.overrides.empty() || options.overwrite || !options.of_run.empty())
+            throw InputError(fmt::format("{} is a run already: --out, --set, --overwrite, --until and --threads are for a scene",
+                                         options.target));
         return serve(options.target, nullptr, options.port);
     }
     const std::filesystem::path scene = scene::resolve_scene_path(options.target);
@@ -113,6 +116,13 @@ void add_view_command(CLI::App& app, int& exit_code) {
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
     command->add_flag("--overwrite", options->overwrite, "Replace a run that is in the folder already");
+    const auto hand_on = [options](const char* name) {
+        return [options, name](const std::string& value) { options->of_run.insert(options->of_run.end(), {name, value}); };
+    };
+    command->add_option_function<std::string>("--until", hand_on("--until"), "Stop a scene's run at this time")->type_name("T");
+    command->add_option_function<std::string>("--threads", hand_on("--threads"), "Worker threads of a scene's run")
+        ->check(CLI::Range(0, 4096))
+        ->type_name("N");
     command->callback([options, &exit_code] { exit_code = view_command(*options); });
 }
 

@@ -113,6 +113,7 @@ const player = new Player(
     shownIndex = index;
     document.body.dataset["frame"] = String(index);
     byId("waiting").hidden = true;
+    for (const id of ["look", "picked", "numbers"]) byId(id).hidden = false; // they are about a frame
     message.clear("frame");
     offerColorings(loaded);
     redraw();

@@ -34,7 +34,7 @@ export class Message {
   show(subject: string, words: string): void {
     this.subject = subject;
     const text = this.place.querySelector("p");
-    if (text) text.textContent = words;
+    if (text) text.textContent = words.charAt(0).toUpperCase() + words.slice(1);
     this.place.hidden = false;
   }
 

@@ -170,6 +170,27 @@ const tests = {
     assert.deepEqual(page.faults, []);
   },
 
+  async "a run without frames, and a browser without WebGL, say so"() {
+    const folder = run("equilibrium/catenoid-0.8-small", "bare");
+    const { address } = await view(folder);
+    const blind = await open(address);
+    await blind.addInitScript(() => {
+      const context = HTMLCanvasElement.prototype.getContext;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+        return kind.startsWith("webgl") ? null : context.call(this, kind, ...more);
+      };
+    });
+    await blind.reload();
+    await blind.locator("#message:has-text('This browser has no WebGL 2')").waitFor();
+    await atFrame(blind, 1);
+    assert.match(await blind.locator("#numbers-text").innerText(), /surface energy\s+\d/);
+    rmSync(join(folder, "frames.pvd"));
+    const page = await open(address);
+    await page.locator("#waiting:has-text('no frames')").waitFor();
+    assert.equal(await page.locator("#look").isVisible(), false, "choices about nothing");
+    assert.deepEqual([...blind.faults, ...page.faults], []);
+  },
+
   async "a run of bubbles is shown, on a phone too"() {
     const folder = run("bubble/coarsening-2d-small", "foam", "--set", "bubble.count=400", "--set", "bubble.end_count=350");
     const { address } = await view(folder);
