@@ -221,6 +221,9 @@ const tests = {
   },
 
   async "nothing outside is read, and nothing is controlled without the token"() {
+    const refused = spawnSync(PROGRAM, ["view", join(folder, "foam"), "--until", "3"], { encoding: "utf8" });
+    assert.equal(refused.status, 2);
+    assert.match(refused.stderr, /is a run already: .*--until/);
     const { address } = await view(join(folder, "foam"));
     const page = await open(address);
     await atFrame(page, 0);
@@ -239,7 +242,7 @@ const tests = {
   },
 
   async "a run that the page started is followed, paused, resumed and stopped"() {
-    const { address, server } = await view("bubble/coarsening-2d-small", "--out", join(folder, "live"), "--set", "time.end=1000", "--set", "time.frame_rate=4", "--set", "bubble.count=1500", "--set", "bubble.end_count=20");
+    const { address, server } = await view("bubble/coarsening-2d-small", "--out", join(folder, "live"), "--until", "1000", "--threads", "1", "--set", "time.frame_rate=4", "--set", "bubble.count=1500", "--set", "bubble.end_count=20");
     const page = await open(address);
     await page.waitForSelector("body[data-frame]", { state: "attached", timeout: 60000 });
     const shown = async () => Number(await page.locator("body").getAttribute("data-frame"));
