@@ -49,6 +49,7 @@ run=$root/runs/$name
 lamella=$build/bin/lamella
 
 [ "$install" = no ] || install_packages build
+prepare_page "$install"
 say "Building in $build"
 configure release "$build" -DLAMELLA_NATIVE=ON -DLAMELLA_BUILD_APP=ON
 cmake --build "$build" --target bin/lamella --parallel "$jobs" >&2
@@ -68,5 +69,5 @@ Done.
 TEXT
 find "$run" \( -name '*.png' -o -name '*.svg' \) | sort | sed 's/^/  picture      /'
 cat <<TEXT
-  program      $lamella   (try: scenes, explain bubble, measure $run)
+  program      $lamella   (try: view $run, scenes, explain bubble)
 TEXT

@@ -82,7 +82,9 @@ fuzz() {
 if [ "$install" = yes ]; then
     install_packages build test
     [ "$full" = no ] || install_packages full
+    install_optional browser "the tests of the page"
 fi
+prepare_page "$install"
 
 say "Building in $build"
 configure release "$build" -DLAMELLA_NATIVE=ON -DLAMELLA_BUILD_APP=ON -DLAMELLA_BUILD_TESTS=ON

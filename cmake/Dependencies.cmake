@@ -11,6 +11,11 @@ find_package(nlohmann_json REQUIRED)   # scene (importers), run, apps
 find_package(tomlplusplus REQUIRED)    # scene
 if(LAMELLA_BUILD_APP)
   find_package(CLI11 REQUIRED)         # apps
+  find_package(PkgConfig)
+  if(PkgConfig_FOUND)
+    pkg_check_modules(cpp_httplib IMPORTED_TARGET cpp-httplib)  # apps/lamella/view: the server of `lamella view`
+  endif()
+  find_program(LAMELLA_NODE node DOC "Node.js, which builds the page of `lamella view`")
 endif()
 
 find_package(OpenEXR CONFIG QUIET)     # io, optional: pictures of light
@@ -21,13 +26,19 @@ Eigen ${Eigen3_VERSION}, zlib ${ZLIB_VERSION_STRING}, HDF5 ${HDF5_VERSION}, nloh
 toml++ ${tomlplusplus_VERSION}, libpng ${PNG_VERSION_STRING}")
 
 # Parts that are built only where their dependency is present, as `lamella version` lists them: "cuda, render".
-set(optional_parts "")
+set(LAMELLA_OPTIONAL_PARTS "")
 if(embree_FOUND)
-  list(APPEND optional_parts render)
+  list(APPEND LAMELLA_OPTIONAL_PARTS render)
   string(APPEND LAMELLA_LIBRARY_VERSIONS ", Embree ${embree_VERSION}")
 endif()
 if(OpenEXR_FOUND)
-  list(APPEND optional_parts exr)
+  list(APPEND LAMELLA_OPTIONAL_PARTS exr)
   string(APPEND LAMELLA_LIBRARY_VERSIONS ", OpenEXR ${OpenEXR_VERSION}")
 endif()
-list(JOIN optional_parts ", " LAMELLA_OPTIONAL_PARTS)
+# The page is built from web/ with the packages that `npm ci` put beside it: a build fetches nothing by itself.
+set(LAMELLA_HAS_PAGE OFF)
+if(cpp_httplib_FOUND AND LAMELLA_NODE AND EXISTS ${PROJECT_SOURCE_DIR}/web/node_modules/esbuild/package.json)
+  set(LAMELLA_HAS_PAGE ON)
+  list(APPEND LAMELLA_OPTIONAL_PARTS view)
+endif()
+list(JOIN LAMELLA_OPTIONAL_PARTS ", " LAMELLA_OPTIONAL_PARTS)

@@ -58,6 +58,23 @@ install_packages() {
         die "apt could not install the packages (see above); install them yourself and pass --no-install: ${missing[*]}"
 }
 
+# install_optional KIND WITHOUT: installs packages that one can do without, or says what is then missing.
+install_optional() {
+    (install_packages "$1") || say "Going on without: $2"
+}
+
+# prepare_page yes|no: what the page of `lamella view` is built from, node and the packages that web/package-lock.json
+# names; "no": only if npm is there already. Nothing else needs them, so it never fails.
+prepare_page() {
+    local without="the page of lamella view"
+    # An npm that is no Debian package will do, and apt would take it away.
+    if [ "$1" = yes ] && ! command -v npm >/dev/null; then install_optional page "$without"; fi
+    [ ! "$root/web/node_modules/.package-lock.json" -nt "$root/web/package-lock.json" ] || return 0
+    command -v npm >/dev/null || return 0
+    say "Fetching the packages of the page"
+    (cd "$root/web" && npm ci --ignore-scripts --no-audit --no-fund >&2) || say "Going on without: $without"
+}
+
 # configure PRESET FOLDER [CMAKE OPTION...]
 configure() {
     local preset=$1 folder=$2 launcher=()

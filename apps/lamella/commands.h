@@ -20,6 +20,6 @@ void add_render_command(CLI::App& app, int& exit_code);
 void add_export_command(CLI::App& app);
 void add_import_command(CLI::App& app);
 void add_version_command(CLI::App& app);
-void add_later_commands(CLI::App& app);  ///< view: listed, but not in this version
+void add_view_command(CLI::App& app, int& exit_code);
 
 }  // namespace lamella::app

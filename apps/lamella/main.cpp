@@ -34,10 +34,10 @@ int run_program(int argc, char** argv) {
     app::add_measure_command(program);
     app::add_plot_command(program);
     app::add_render_command(program, exit_code);
+    app::add_view_command(program, exit_code);
     app::add_export_command(program);
     app::add_import_command(program);
     app::add_version_command(program);
-    app::add_later_commands(program);
 
     try {
         program.parse(argc, argv);

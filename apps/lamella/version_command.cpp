@@ -1,5 +1,4 @@
 #include "lamella/core/build_info.h"
-#include "lamella/core/error.h"
 #include "lamella/scene/scene.h"
 
 #include <fmt/format.h>
@@ -37,17 +36,6 @@ void print_version(bool json) {
                      {"libraries", fmt::format("{}", fmt::join(build.libraries, ", "))}}));
 }
 
-void add_later_command(CLI::App& app, const std::string& name, const std::string& summary) {
-    CLI::App* command = app.add_subcommand(name, summary + " (comes with a later version)");
-    command->allow_extras();
-    command->callback([name] {
-        throw InputError(
-            fmt::format("`lamella {}` comes with a later version; `lamella plot` draws pictures of a run, "
-                        "and its frames open in ParaView",
-                        name));
-    });
-}
-
 }  // namespace
 
 void add_version_command(CLI::App& app) {
@@ -57,10 +45,6 @@ void add_version_command(CLI::App& app) {
     auto json = std::make_shared<bool>(false);
     command->add_flag("--json", *json, "Print one JSON object");
     command->callback([json] { print_version(*json); });
-}
-
-void add_later_commands(CLI::App& app) {
-    add_later_command(app, "view", "Show a run in the web browser");
 }
 
 }  // namespace lamella::app

@@ -7,14 +7,14 @@ import unittest
 
 from program import DATA, PROGRAM, ProgramTest, lamella
 
-COMMANDS = ["run", "resume", "check", "scenes", "explain", "measure", "plot", "export", "import", "version"]
+COMMANDS = ["run", "resume", "check", "scenes", "explain", "measure", "plot", "view", "export", "import", "version"]
 
 
 class Help(ProgramTest):
     def test_lists_every_command(self):
         result = lamella("--help")
         self.assert_exit(result, 0)
-        for command in COMMANDS + ["render", "view"]:
+        for command in COMMANDS + ["render"]:
             self.assertRegex(result.stdout, rf"(?m)^  {command} ")
         self.assertEqual(result.stderr, "")
 
@@ -39,10 +39,6 @@ class Misuse(ProgramTest):
                           ["run", self.scene, "--progress", "loud"], ["resume"], ["import", "x.json"],
                           ["run", self.scene, "--device", "gpu"], ["version", "now"], ["--bogus"]):
             self.assert_refused(lamella(*arguments, cwd=self.folder))
-
-    def test_of_things_that_come_later_says_so(self):
-        for command in ("view",):
-            self.assert_refused(lamella(command, "foam", "--size", "10x10"), "later version")
 
     def test_of_a_device_that_is_not_there_says_so(self):
         self.assert_refused(lamella("run", self.scene, "--device", "cuda", "--out", self.folder / "run"), "CUDA")
