@@ -293,7 +293,7 @@ def load(source, scale=None):
 
 
 def studio():
-    """A camera and two lamps, for pictures from the command line."""
+    """A camera, two lamps and a dim room, for pictures from the command line."""
     scene = bpy.context.scene
     for thing in [o for o in scene.objects if not o.name.startswith("lamella")]:
         bpy.data.objects.remove(thing)
@@ -310,13 +310,29 @@ def studio():
     scene.collection.objects.link(target)
     follow = camera.constraints.new("TRACK_TO")
     follow.target, follow.track_axis, follow.up_axis = target, "TRACK_NEGATIVE_Z", "UP_Y"
-    for place, size, power in (((-5, -4, 5), 5.0, 4000.0), ((5, -2, 3), 3.0, 1500.0)):
+    for place, size, power in (((-5, -4, 5), 7.0, 6000.0), ((5, -2, 3), 4.0, 2000.0)):
         lamp = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "AREA"))
         lamp.data.size, lamp.data.energy = size * reach, power * reach * reach
         lamp.location = middle + reach * np.array(place)
         aim = lamp.constraints.new("TRACK_TO")
         aim.target, aim.track_axis, aim.up_axis = target, "TRACK_NEGATIVE_Z", "UP_Y"
         scene.collection.objects.link(lamp)
+
+
+    world = scene.world or bpy.data.worlds.new("studio")
+    scene.world = world
+    world.use_nodes = True
+    tree = world.node_tree
+    tree.nodes.clear()
+    path, mix, room, backdrop, output = (tree.nodes.new(f"ShaderNode{kind}") for kind in
+                                         ("LightPath", "MixShader", "Background", "Background", "OutputWorld"))
+    room.inputs["Color"].default_value = (0.75, 0.78, 0.85, 1.0)      # what films mirror
+    backdrop.inputs["Color"].default_value = (0.012, 0.014, 0.018, 1.0)  # what the camera sees
+    tree.links.new(path.outputs["Is Camera Ray"], mix.inputs["Fac"])
+    tree.links.new(room.outputs[0], mix.inputs[1])
+    tree.links.new(backdrop.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    scene.view_settings.view_transform = "Standard"
 
 
 def main(words):
@@ -341,6 +357,7 @@ def main(words):
         scene = bpy.context.scene
         scene.render.engine = "CYCLES"
         scene.cycles.samples = options.samples
+        scene.cycles.use_denoising = False  # not every Blender can
         scene.cycles.transparent_max_bounces = 64
         scene.render.resolution_x, scene.render.resolution_y = map(int, options.size.split("x"))
         scene.render.filepath = str(pathlib.Path(options.render).resolve())

@@ -97,7 +97,7 @@ private:
 std::vector<double> y_up(std::vector<double> vectors) {
     for (std::size_t i = 0; i + 2 < vectors.size(); i += 3) {
         std::swap(vectors[i + 1], vectors[i + 2]);
-        vectors[i + 2] = -vectors[i + 2];
+        vectors[i + 2] = 0.0 - vectors[i + 2];  // without a sign at 0
     }
     return vectors;
 }
