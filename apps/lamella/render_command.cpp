@@ -187,6 +187,7 @@ void complete(const PictureSource& source, const std::vector<std::size_t>& chose
     if (!options->video.empty() && fs::path(options->video).extension() != ".mp4")
         throw InputError(fmt::format("{}: a film ends in .mp4", options->video));
     if (is_flat(source.frame(chosen[0]))) picture.view = {.azimuth_deg = -90.0, .elevation_deg = 90.0, .zoom = 1.3};
+    if (!picture.field.empty()) picture.view.shift = 0.09;
     if (!options->period.empty()) options->box = read_period(options->period);
     if (!options->camera.empty()) read_camera(options->camera, &picture.view);
     if (options->frame == "all") share_view(source, chosen, options);

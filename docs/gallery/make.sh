@@ -38,14 +38,15 @@ while [ $# -gt 0 ]; do
     shift
 done
 
-# name | scene | frame | options of lamella render | what it is
+# name | scene | frame | options of lamella render | what it is (nothing: not on the page)
 pictures() {
     cat <<'TEXT'
+opening|equilibrium/triple-bubble-small|last|--camera -50,40,1.15 --size 1200x600|
 double-bubble|vortex_sheet/double-bubble-small|last||Two bubbles share a film: the standard double bubble, where a swing has come to rest
 two-bubbles-meet|vortex_sheet/two-bubbles-meet-small|8||Two bubbles touch and pull each other together
 pulling-apart|vortex_sheet/pulling-apart-small|16||A double bubble pulled by its ends
 bubble-in-ring|vortex_sheet/bubble-in-ring-small|20|--exposure 0.9|A bubble without its partition swings
-blowing|vortex_sheet/blowing-small|10||A film on a ring, blown into a bubble
+blowing|vortex_sheet/blowing-small|5||A film on a ring, blown into a bubble
 sweeping-ring|vortex_sheet/sweeping-ring-small|6||A ring sweeps through air and leaves a bubble
 catenoid-pinching|vortex_sheet/catenoid-pinching-small|32||A film between two rings, drawn too far apart, pinches
 carousel|vortex_sheet/carousel-small|10|--camera -75,35|Bubbles carried round
@@ -68,7 +69,7 @@ weaire-phelan|equilibrium/weaire-phelan-small|last|--period 2,2,2 --exposure 0.7
 coarsening-2d|bubble/coarsening-2d-small|last|--field radius|A flat foam coarsens: the large grow, the small vanish
 coarsening-3d|bubble/coarsening-3d-small|last|--ground|A foam coarsens
 flow-2d|bubble/flow-2d-small|last|--field velocity|A flat foam flows
-phase-separation|bubble/phase-separation-small|last|--field pressure|Bubbles gather and leave liquid between them
+phase-separation|bubble/phase-separation-small|last||Bubbles gather and leave liquid between them
 TEXT
 }
 
@@ -84,8 +85,9 @@ while IFS='|' read -r name scene frame options text; do
     wanted "$name" || continue
     run=$runs/${scene//\//-}
     [ -f "$run/frames.pvd" ] || "$program" run "$scene" --out "$run" --overwrite --progress none </dev/null
+    case $options in *--size*) ;; *) options="$options --size $size" ;; esac
     # shellcheck disable=SC2086  # options are words
-    "$program" render "$run" --frame "$frame" --size "$size" --samples "$samples" --progress none --out "$runs/$name.png" \
+    "$program" render "$run" --frame "$frame" --samples "$samples" --progress none --out "$runs/$name.png" \
         $options </dev/null
     ffmpeg -nostdin -loglevel error -y -i "$runs/$name.png" -q:v 2 "$here/$name.jpg"
 done < <(pictures)
@@ -102,6 +104,7 @@ done < <(pictures)
     row="|"
     count=0
     while IFS='|' read -r name scene frame options text; do
+        [ -n "$text" ] || continue
         row+=" ![$text]($name.jpg) $text: \`$scene\`${options:+, \`$options\`} |"
         count=$((count + 1))
         if [ $((count % 3)) -eq 0 ]; then
