@@ -8,7 +8,7 @@ usage() {
     cat <<'TEXT'
 usage: ./run.sh [SCENE] [--no-install] [--build-dir DIR] [-h]
 
-Builds lamella for this machine, runs a scene, plots the result and says where everything is.
+Builds lamella for this machine, runs a scene, plots and draws the result and says where everything is.
 
   SCENE            a scene file, or the name of a shipped scene (default: vortex_sheet/double-bubble-small)
   --no-install     do not install missing Debian packages
@@ -60,6 +60,11 @@ say "Running $scene"
 say "Plotting"
 "$lamella" plot "$run" >/dev/null
 
+if [[ $("$lamella" version) == *parts*render* ]]; then
+    say "Drawing the last frame"
+    "$lamella" render "$run" --out "$run/picture.png"
+fi
+
 cat <<TEXT
 
 Done.
@@ -67,7 +72,8 @@ Done.
   series       $run/series.csv
   ParaView     $run/frames.pvd
 TEXT
-find "$run" \( -name '*.png' -o -name '*.svg' \) | sort | sed 's/^/  picture      /'
+find "$run/plots" \( -name '*.png' -o -name '*.svg' \) | sort | sed 's/^/  plot         /'
+[ ! -f "$run/picture.png" ] || echo "  picture      $run/picture.png"
 cat <<TEXT
   program      $lamella   (try: view $run, scenes, explain bubble)
 TEXT

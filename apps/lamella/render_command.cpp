@@ -3,6 +3,7 @@
 #include "lamella/core/parallel.h"
 #include "lamella/core/units.h"
 #include "lamella/io/atomic_file.h"
+#include "lamella/render/periodic_images.h"
 #include "lamella/render/picture.h"
 
 #include <fmt/format.h>
@@ -19,6 +20,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,9 @@ struct RenderOptions {
     std::string out;
     std::string video;
     double rate = 30.0;
+    int images = 2;
+    std::string period;
+    std::optional<sim::Box> box;  ///< what period says
     int bits = 8;
     int threads = 0;
     std::string progress;
@@ -61,28 +66,55 @@ void read_size(const std::string& text, render::PictureOptions* picture) {
     }
 }
 
-/// "-60,20" or "-60,20,1.5": azimuth and elevation [deg], zoom.
-void read_camera(const std::string& text, render::View* view) {
-    const std::string what = fmt::format("--camera {} is not AZIMUTH,ELEVATION[,ZOOM] such as -60,20", text);
+std::vector<double> numbers(const std::string& text, const std::string& what) {
     std::vector<double> values;
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t end = std::min(text.find(',', begin), text.size());
         values.push_back(number(std::string_view(text).substr(begin, end - begin), what));
         begin = end + 1;
     }
+    return values;
+}
+
+/// "-60,20" or "-60,20,1.5": azimuth and elevation [deg], zoom.
+void read_camera(const std::string& text, render::View* view) {
+    const std::string what = fmt::format("--camera {} is not AZIMUTH,ELEVATION[,ZOOM] such as -60,20", text);
+    const std::vector<double> values = numbers(text, what);
     if (values.size() < 2 || values.size() > 3) throw InputError(what);
     view->azimuth_deg = values[0];
     view->elevation_deg = values[1];
     if (values.size() == 3) view->zoom = values[2];
 }
 
+/// "1.26,1.26,1.26": a box for films whose frames do not say that they are periodic; 0: not along this axis.
+sim::Box read_period(const std::string& text) {
+    const std::string what = fmt::format("--period {} is not X,Y,Z such as 2,2,2", text);
+    const std::vector<double> values = numbers(text, what);
+    if (values.size() != 3) throw InputError(what);
+    sim::Box box;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (values[k] < 0.0) throw InputError(what + "; lengths are not negative");
+        box.lengths[k] = values[k];
+        box.periodic[k] = values[k] > 0.0;
+    }
+    return box;
+}
+
+/// The frame as it is drawn: films in a periodic box with their images.
+sim::Frame shown_frame(const PictureSource& source, std::size_t index, const RenderOptions& options) {
+    sim::Frame frame = source.frame(index);
+    if (options.box) frame.box = options.box;
+    return render::periodic_images(std::move(frame), options.images);
+}
+
 /// What is flat is looked at from above, unless the camera is told otherwise.
 bool is_flat(const sim::Frame& frame) { return frame.box && frame.box->dimension == 2; }
 
 /// One camera and one color scale for a whole sequence: everything fits, and a color means the same in all of it.
-void share_view(const PictureSource& frames, const std::vector<std::size_t>& chosen, render::PictureOptions* picture) {
+void share_view(const PictureSource& source, const std::vector<std::size_t>& chosen, RenderOptions* options) {
+    render::PictureOptions* const picture = &options->picture;
     for (const std::size_t index : chosen) {
-        const sim::Frame frame = frames.frame(index);
+        const sim::Frame frame = shown_frame(source, index, *options);
         if (frame.surface.triangles.empty() && frame.points.empty()) continue;  // all burst
         const render::Bounds bounds = render::frame_bounds(frame);
         picture->bounds = picture->bounds ? render::joined(*picture->bounds, bounds) : bounds;
@@ -155,8 +187,10 @@ void complete(const PictureSource& source, const std::vector<std::size_t>& chose
     if (!options->video.empty() && fs::path(options->video).extension() != ".mp4")
         throw InputError(fmt::format("{}: a film ends in .mp4", options->video));
     if (is_flat(source.frame(chosen[0]))) picture.view = {.azimuth_deg = -90.0, .elevation_deg = 90.0, .zoom = 1.3};
+    if (!picture.field.empty()) picture.view.shift = 0.09;
+    if (!options->period.empty()) options->box = read_period(options->period);
     if (!options->camera.empty()) read_camera(options->camera, &picture.view);
-    if (options->frame == "all") share_view(source, chosen, &picture);
+    if (options->frame == "all") share_view(source, chosen, options);
 }
 
 /// The file of each chosen frame.
@@ -193,7 +227,7 @@ void render_sequence(RenderOptions options) {
             progress.fraction = (static_cast<double>(k) + fraction) / static_cast<double>(chosen.size());
             display.show(progress);
         };
-        const sim::Frame frame = source.frame(chosen[k]);
+        const sim::Frame frame = shown_frame(source, chosen[k], options);
         const render::Picture picture = render::render_frame(frame, options.picture, show);
         write_picture(files[k], picture, options);
         notes.push_back(notes_on(files[k], frame, picture, options));
@@ -232,6 +266,8 @@ void add_render_command(CLI::App& app, int& exit_code) {
     command->add_flag("--ground", picture.ground, "A polished table under everything");
     command->add_option("--thickness", options->thickness, "Of all films, e.g. \"350 nm\". By default the frame's; films of which it is not known are drawn as if they had drained for a while: thin above, thick below (assumed; the .json beside the picture says so)")->type_name("LENGTH");
     command->add_option("--borders", picture.border_width, "Width of Plateau borders and wires, 1 as usual, 0 none")->type_name("F");
+    command->add_option("--images", options->images, "Of films in a periodic box, along each axis; by default 2")->check(CLI::Range(1, 8))->type_name("N");
+    command->add_option("--period", options->period, "Lengths of the periodic box, for films whose frames have none")->type_name("X,Y,Z");
     command->add_option("--exposure", picture.exposure, "Multiplies all light; by default 1")->type_name("F");
     command->add_option("--seed", picture.seed, "Of the noise")->type_name("N");
     command->add_option("--bits", options->bits, "Per channel of a .png: 8 or 16")->check(CLI::IsMember({8, 16}))->type_name("N");

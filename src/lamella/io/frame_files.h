@@ -36,11 +36,13 @@ sim::Frame parse_vtp(std::string_view contents, const std::string& name);
 /// line. A flat box gets a slab as thick as the largest disc, as the format cannot hold a side of length 0.
 void write_extended_xyz(std::ostream& out, const sim::Frame& frame);
 
-/// Binary PLY: positions, radius and fields as vertex properties, triangles as faces with their region labels.
+/// Binary PLY: positions, radius and fields as vertex properties, triangles as faces with their region labels. The vertex
+/// fields `normal` and `color` get the names that other programs know: nx, ny, nz; red, green, blue (uchar).
 /// Surface and points share one list as in write_vtp. Integer fields beyond 32 bit become doubles (PLY has no more).
 void write_ply(std::ostream& out, const sim::Frame& frame);
 
-/// Wavefront OBJ of the films alone: a group film_B_F for the films with region B behind and F in front.
+/// Wavefront OBJ of the films alone: a group film_B_F for the films with region B behind and F in front. Vertex fields
+/// `normal` and `color` become its normals and colors of vertices, `thickness_nm` the first texture coordinate [um].
 void write_obj(std::ostream& out, const sim::Frame& frame);
 
 /// Surface Evolver datafile of the films alone: vertices and edges on wires are fixed, every region that films close in
@@ -50,12 +52,22 @@ void write_surface_evolver(std::ostream& out, const sim::Frame& frame);
 /// A table with one row per point: x, y, z, radius, then every field; header names carry units: "velocity_x[m/s]".
 void write_points_csv(std::ostream& out, const sim::Frame& frame);
 
+// What follows is for programs that draw; give it frames with normals, thickness and color (render/baked_frame.h).
+
+/// Binary glTF 2.0: a mesh with a material of its own for every film (KHR_materials_iridescence for its mean thickness),
+/// balls as polyhedra; vertex fields as attributes, `thickness_nm` as _THICKNESS_NM; region labels as extras of the meshes.
+void write_glb(std::ostream& out, const sim::Frame& frame);
+
+/// USD as text: films as one mesh with vertex fields and region labels as primvars, balls as points with widths.
+void write_usda(std::ostream& out, const sim::Frame& frame);
+
 /// The formats of `lamella export`: name, file suffix, one line on what it is for, and the writer.
 struct FrameFormat {
     std::string name;
     std::string suffix;
     std::string summary;
     void (*write)(std::ostream& out, const sim::Frame& frame);
+    bool for_drawing = false;  ///< it expects a baked frame
 };
 const std::vector<FrameFormat>& frame_formats();
 

@@ -8,9 +8,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <ostream>
 #include <span>
 
@@ -20,11 +22,24 @@ namespace {
 /// One property of a vertex or face: where its value for an item stands.
 struct Property {
     std::string name;
-    bool integer = false;
+    enum Type { kDouble, kInt, kByte } type = kDouble;
     std::span<const double> values;
     std::size_t stride = 1;
     std::size_t offset = 0;
 };
+
+/// Names that other programs know, for the components of the fields `normal` and `color`.
+std::optional<std::string> known_name(const std::string& field, int components, int k) {
+    constexpr std::array<const char*, 3> kNormal{"nx", "ny", "nz"}, kColor{"red", "green", "blue"};
+    if (components != 3) return std::nullopt;
+    if (field == "normal") return kNormal[static_cast<std::size_t>(k)];
+    if (field == "color") return kColor[static_cast<std::size_t>(k)];
+    return std::nullopt;
+}
+
+bool are_bytes(std::span<const double> values) {
+    return std::all_of(values.begin(), values.end(), [](double v) { return v >= 0.0 && v <= 255.0; });
+}
 
 bool fits_32_bit(std::span<const double> values) {
     constexpr double kLargest = std::numeric_limits<std::int32_t>::max();
@@ -43,10 +58,11 @@ void add_properties(std::vector<Property>& list,
                     bool integer,
                     int components,
                     std::span<const double> values) {
-    const bool as_integer = integer && fits_32_bit(values);
+    const bool color = integer && name == "color" && components == 3 && are_bytes(values);
+    const Property::Type type = color ? Property::kByte : integer && fits_32_bit(values) ? Property::kInt : Property::kDouble;
     for (int k = 0; k < components; ++k) {
-        list.push_back({ply_word(detail::component_name(name, components, k)), as_integer, values,
-                        static_cast<std::size_t>(components), static_cast<std::size_t>(k)});
+        list.push_back({known_name(name, components, k).value_or(ply_word(detail::component_name(name, components, k))), type,
+                        values, static_cast<std::size_t>(components), static_cast<std::size_t>(k)});
     }
 }
 
@@ -58,17 +74,18 @@ void append_bytes(std::string& out, Value value) {
 void append_properties(std::string& out, const std::vector<Property>& properties, std::size_t item) {
     for (const Property& p : properties) {
         const double value = p.values[item * p.stride + p.offset];
-        if (p.integer) {
-            append_bytes(out, static_cast<std::int32_t>(value));
-        } else {
-            append_bytes(out, value);
+        switch (p.type) {
+            case Property::kByte: append_bytes(out, static_cast<std::uint8_t>(value)); break;
+            case Property::kInt: append_bytes(out, static_cast<std::int32_t>(value)); break;
+            case Property::kDouble: append_bytes(out, value); break;
         }
     }
 }
 
 std::string property_lines(const std::vector<Property>& properties) {
     std::string lines;
-    for (const Property& p : properties) lines += fmt::format("property {} {}\n", p.integer ? "int" : "double", p.name);
+    constexpr std::array<const char*, 3> kTypes{"double", "int", "uchar"};
+    for (const Property& p : properties) lines += fmt::format("property {} {}\n", kTypes[p.type], p.name);
     return lines;
 }
 

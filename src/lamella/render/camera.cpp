@@ -56,7 +56,7 @@ Camera::Camera(const View& view, const Bounds& bounds, std::size_t width, std::s
     const double pixel = 2.0 * std::tan(half_angle) / shorter;
     across_ = pixel * right;
     down_ = -pixel * up;
-    corner_ = -back - 0.5 * static_cast<double>(width) * across_ - 0.5 * static_cast<double>(height) * down_;
+    corner_ = -back - (0.5 - view.shift) * static_cast<double>(width) * across_ - 0.5 * static_cast<double>(height) * down_;
 }
 
 Vec3 Camera::direction(double x, double y) const {

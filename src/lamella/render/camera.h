@@ -11,6 +11,7 @@ struct View {
     double elevation_deg = 16.0;  ///< above the horizon; 90: from straight above, +y up in the picture
     double zoom = 1.0;            ///< 1: everything just fits
     double field_of_view_deg = 26.0;  ///< of the picture's shorter side
+    double shift = 0.0;               ///< of the middle to the left, relative to the picture's width: room for a legend
 };
 
 /// The ball around everything that is seen.

@@ -28,6 +28,8 @@ public:
     }
 
     bool transparent() const { return transparent_; }
+    /// How many samples show it well where nothing is before it.
+    int samples() const { return shows_environment_ ? 4 : 1; }
     /// @param x, y  0 to 1 from the upper left corner
     std::optional<Rgb> color(double x, double y) const {
         if (shows_environment_) return std::nullopt;
@@ -54,7 +56,6 @@ private:
 };
 
 constexpr std::size_t kTile = 16;  // pixels along a side
-constexpr int kEmptySamples = 2;   // of a pixel that shows the background only
 
 /// Everything that a tile needs.
 struct Studio {
@@ -140,7 +141,7 @@ void draw_tile(const Studio& studio, const Tile& tile, Picture* picture) {
         for (std::size_t x = tile.x0; x < tile.x1; ++x) {
             const bool empty = !everywhere && busy[(y - tile.y0) * (tile.x1 - tile.x0) + x - tile.x0] == 0;
             const RandomBits bits = random_bits(options.seed, RandomStream::kPicture, 0, y * options.width + x);
-            for (int s = 0; s < (empty ? std::min(kEmptySamples, options.samples) : options.samples); ++s) {
+            for (int s = 0; s < (empty ? std::min(studio.backdrop.samples(), options.samples) : options.samples); ++s) {
                 const detail::SampleNumbers numbers(bits, s);
                 const Vec2 place = numbers.place();
                 const double px = static_cast<double>(x) + tent(place[0]), py = static_cast<double>(y) + tent(place[1]);

@@ -158,7 +158,7 @@ TEST(FrameFormats, HaveDistinctNamesAndTellWhenTheStreamFails) {
         EXPECT_ERROR(format.write(full, films_only ? surface_frame(4) : two_bubbles()), IoError,
                      "cannot write the exported frame");
     }
-    EXPECT_EQ(names, (std::set<std::string>{"ply", "obj", "fe", "xyz", "csv"}));
+    EXPECT_EQ(names, (std::set<std::string>{"ply", "obj", "glb", "usda", "fe", "xyz", "csv"}));
 }
 
 TEST(Pvd, ReadsBackTimesAndNames) {

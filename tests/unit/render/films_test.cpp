@@ -1,6 +1,7 @@
 #include "lamella/render/detail/assumed_thickness.h"
 #include "lamella/render/detail/curved_film.h"
 #include "lamella/render/detail/particle_average.h"
+#include "lamella/render/periodic_images.h"
 
 #include <gtest/gtest.h>
 
@@ -76,6 +77,23 @@ TEST(AssumedThickness, IsThinAboveAndThickBelow) {
     }
     EXPECT_LT(above, 320e-9);
     EXPECT_GT(below, 550e-9);
+}
+
+TEST(PeriodicImages, JoinAcrossTheBox) {
+    sim::Frame frame = flat_film(4, 3e-7);  // 2 x 2 in a box of 2 x 2 x 5
+    frame.box = sim::Box{.dimension = 3, .origin = {}, .lengths = {{2.0, 2.0, 5.0}}, .periodic = {true, true, false}};
+    const sim::Frame many = periodic_images(frame, 3);
+    EXPECT_EQ(many.surface.triangles.size(), 9 * frame.surface.triangles.size());
+    EXPECT_EQ(many.surface.regions.size(), many.surface.triangles.size());
+    EXPECT_EQ(many.surface.find_of_vertices("thickness")->values.size(), many.surface.position.size());
+    const FilmPatches patches = film_patches(many.surface);
+    EXPECT_EQ(patches.borders.size(), 4U * 12U);  // the outer rim only
+    for (const BorderEdge& edge : patches.borders) EXPECT_FALSE(edge.on_wire);
+
+    frame.box->periodic = {false, false, true};  // images above each other do not touch: one is left
+    EXPECT_EQ(periodic_images(frame, 2).surface.triangles.size(), frame.surface.triangles.size());
+    frame.box.reset();
+    EXPECT_EQ(periodic_images(frame, 2).surface.position.size(), frame.surface.position.size());
 }
 
 }  // namespace

@@ -140,10 +140,10 @@ void PathTracer::show_film(const Shot& shot, const FilmCrossing& crossing, std::
     const Rgb far = far_light(image);
     shot.seen.light += times(weight, far);
     const bool first = shot.path.depth == 0;
-    const double brightness = (std::abs(own[0]) + std::abs(own[1]) + std::abs(own[2])) / 3.0;
     // What is in the way can take all of E: where a lamp is mirrored, (nearly) every ray looks.
-    constexpr double kOwn = 4.0, kLamp = 1.5, kLater = 0.4;
-    const double eager = kOwn * brightness + kLamp * std::abs(optics::luminance(times(own, far)));
+    constexpr double kOwn = 3.5, kLamp = 1.3, kLater = 0.4;
+    double eager = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) eager += std::abs(own[k]) * (kOwn + kLamp * far[k]) / 3.0;
     const double chance = std::min(1.0, (first ? 1.0 : kLater) * eager);
     const double lot = first && number < 2 ? shot.from.numbers.lot(number) : shot.from.numbers.next();
     if (lot >= chance || shot.path.depth >= kDeepest) return;
