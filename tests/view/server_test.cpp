@@ -56,6 +56,18 @@ protected:
     fs::path outside, folder;
 };
 
+TEST_F(ServerTest, CompressesNothing) {
+    const RunView run(folder, nullptr);
+    const Server server(run, kToken, 0);
+    httplib::Client client("127.0.0.1", server.port());
+    client.set_decompress(false);
+    for (const char* path : {"/", "/page.js", "/api/state", "/api/series", "/api/scene", "/api/frames/0"}) {
+        const auto result = client.Get(path, {{"Accept-Encoding", "gzip, deflate, br"}});
+        ASSERT_TRUE(result) << path;
+        EXPECT_FALSE(result->has_header("Content-Encoding")) << path;
+    }
+}
+
 TEST_F(ServerTest, AnswersWhatIsInTheFolder) {
     const RunView run(folder, nullptr);
     const Server server(run, kToken, 0);
