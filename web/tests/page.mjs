@@ -104,6 +104,28 @@ async function until(words, value) {
   assert.fail(`not within half a minute: ${words}`);
 }
 
+/// A frame of particles on a sphere, thicker towards the bottom, as apps/lamella/view/message.h has it.
+function particleMessage(count) {
+  const position = new Float32Array(3 * count);
+  const thickness = new Float32Array(count);
+  for (let i = 0; i < count; ++i) {
+    const z = 1 - (2 * i + 1) / count;
+    position.set([Math.sqrt(1 - z * z) * Math.cos(2.4 * i), Math.sqrt(1 - z * z) * Math.sin(2.4 * i), z], 3 * i);
+    thickness[i] = 4e-7 * (1 - z);
+  }
+  const arrays = [
+    { set: "points", name: "position", unit: "m", type: "f32", components: 3, count, offset: 0 },
+    { set: "point_fields", name: "thickness", unit: "m", type: "f32", components: 1, count, offset: 12 * count },
+  ];
+  const shown = { shown: count, all: count };
+  const header = Buffer.from(JSON.stringify({ solver: "particles", time: 0, time_unit: "s", step: 0, box: null, triangles: { shown: 0, all: 0 }, points: shown, scalars: [], arrays }));
+  const padded = Buffer.concat([header, Buffer.alloc((4 - (header.length % 4)) % 4, " ")]);
+  const intro = Buffer.alloc(16);
+  intro.write("LMLA");
+  [1, padded.length, 16 * count].forEach((value, k) => intro.writeUInt32LE(value, 4 + 4 * k));
+  return Buffer.concat([intro, padded, Buffer.from(position.buffer), Buffer.from(thickness.buffer)]);
+}
+
 const tests = {
   async "films of 300 nm are in color, black films are dark"() {
     const colored = await open((await view(run("equilibrium/double-bubble-small", "films", "--set", "material.thickness=3e-7"))).address);
@@ -220,6 +242,36 @@ const tests = {
     const buttons = await phone.locator("#timeline button:visible").all();
     for (const button of buttons) assert.ok((await button.boundingBox()).height >= 44, "too small for a thumb");
     assert.deepEqual([...page.faults, ...phone.faults], []);
+  },
+
+  async "particles have the colors of the film that they carry, and fingers turn and zoom"() {
+    const { address } = await view(join(folder, "foam"));
+    const page = await browser.newPage({ viewport: { width: 390, height: 780 }, isMobile: true, hasTouch: true });
+    page.faults = [];
+    page.on("pageerror", (error) => page.faults.push(error.message));
+    await page.route("**/api/frames/*", (route) => route.fulfill({ body: particleMessage(3000), contentType: "application/octet-stream" }));
+    await page.goto(address);
+    await atFrame(page, 0);
+    assert.equal(await page.locator("#coloring").inputValue(), "film colors");
+    assert.match(await page.locator("#legend").innerText(), /Film thickness 0\.133 – 800 nm/);
+    const before = await colors(page, ...MIDDLE);
+    assert.ok(before.saturation > 0.2 && before.light > 20, JSON.stringify(before));
+
+    const touch = await page.context().newCDPSession(page);
+    const fingers = async (type, ...points) => touch.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+    await fingers("touchStart", [195, 150]);
+    for (let y = 160; y <= 290; y += 10) await fingers("touchMove", [195, y]);
+    await fingers("touchEnd");
+    const turned = await colors(page, ...MIDDLE); // from the thin top now
+    assert.ok(Math.abs(turned.mean[2] - before.mean[2]) + Math.abs(turned.mean[0] - before.mean[0]) > 10, JSON.stringify({ before, turned }));
+    const corner = await colors(page, 0.02, 0.2, 0.1, 0.1);
+    await fingers("touchStart", [185, 200], [205, 200]);
+    for (let d = 20; d <= 120; d += 10) await fingers("touchMove", [195 - d, 200], [195 + d, 200]);
+    await fingers("touchEnd");
+    const near = await colors(page, 0.02, 0.2, 0.1, 0.1);
+    assert.ok(near.light > corner.light + 10, JSON.stringify({ corner, near }));
+    assert.equal(await page.locator("#picked-text dl").count(), 0, "a gesture is no tap");
+    assert.deepEqual(page.faults, []);
   },
 
   async "nothing outside is read, and nothing is controlled without the token"() {
