@@ -1,9 +1,10 @@
+#include "view/film_parts.h"
+
 #include "lamella/core/error.h"
 
 #include <gtest/gtest.h>
 
 #include "films.h"
-#include "view/film_parts.h"
 
 namespace lamella::app::view {
 namespace {
@@ -36,7 +37,8 @@ TEST(FilmParts, FindsBordersAndRims) {
     EXPECT_EQ(parts.borders.size(), 4u);
     EXPECT_EQ(parts.wires.size(), 3u * 3u * 4u);
     for (const auto& ends : parts.borders)
-        for (const std::uint32_t end : ends) EXPECT_EQ(std::abs(surface.position[end][0]) + std::abs(surface.position[end][1]), 0.0);
+        for (const std::uint32_t end : ends)
+            EXPECT_EQ(std::abs(surface.position[end][0]) + std::abs(surface.position[end][1]), 0.0);
 }
 
 TEST(FilmParts, FindsTheBordersOfTrianglesThatShareNoVertex) {

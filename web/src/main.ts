@@ -7,6 +7,7 @@ import { fieldLegend, filmLegend, thicknessStrip } from "./legend";
 import { byId, dictionary, Message } from "./page";
 import { Player } from "./player";
 import { Look, Pick, Stage } from "./stage";
+import { showProvenance, showText } from "./texts";
 import { countText, nameText, numberText, quantityText } from "./words";
 import "./page.css";
 
@@ -363,27 +364,6 @@ function listenToPicks(): void {
     picked = hit?.kind === "ball" ? { ...hit, id: (frame && idsOf(frame)?.[hit.index]) ?? null } : hit;
     void showPicked();
   });
-}
-
-async function showText(id: string, load: () => Promise<string>): Promise<void> {
-  try {
-    byId(id).textContent = await load();
-  } catch (error) {
-    byId(id).textContent = (error as Error).message;
-  }
-}
-
-async function showProvenance(): Promise<void> {
-  const place = byId("provenance-text");
-  try {
-    const record = JSON.parse(await api.provenance()) as Record<string, unknown>;
-    const rows: [string, string][] = [];
-    for (const [key, value] of Object.entries(record))
-      if (typeof value === "string" || typeof value === "number") rows.push([nameText(key), typeof value === "number" ? numberText(value) : value]);
-    place.replaceChildren(dictionary(rows));
-  } catch (error) {
-    place.textContent = (error as Error).message;
-  }
 }
 
 async function start(): Promise<void> {
