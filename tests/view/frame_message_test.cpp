@@ -42,6 +42,7 @@ std::vector<float> floats(const std::string& bytes, const std::string& set, cons
 
 TEST(FrameMessage, HoldsWhatTheHeaderSays) {
     sim::Frame frame = three_sheets(4);
+    frame.surface = with_outside(frame.surface);
     frame.time = 0.25;
     frame.scalars.push_back({"energy", "J", std::numeric_limits<double>::quiet_NaN(), "of the films"});
     DetailLimits as_it_is;

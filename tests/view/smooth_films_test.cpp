@@ -79,7 +79,7 @@ TEST(SmoothFilms, HaveUnitNormalsIntoTheLargerRegion) {
 }
 
 TEST(SmoothFilms, KeepMeetingOnABentBorder) {
-    sim::Surface surface = three_sheets(4).surface;
+    sim::Surface surface = with_outside(three_sheets(4).surface);
     for (Vec3& x : surface.position) x[0] += 0.3 * x[2] * x[2];
     const FilmParts parts = film_parts(surface);
     constexpr int kPieces = 3;
@@ -97,7 +97,7 @@ TEST(SmoothFilms, KeepMeetingOnABentBorder) {
 }
 
 TEST(SmoothFilms, KeepStraightRimsAndTheirCorners) {
-    const sim::Surface surface = three_sheets(3).surface;
+    const sim::Surface surface = with_outside(three_sheets(3).surface);
     for (const auto& segment : smooth_films(surface, film_parts(surface), 4).wires)
         for (const Vec3& end : segment) {
             const double radius = std::hypot(end[0], end[1]);

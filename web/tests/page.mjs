@@ -175,6 +175,9 @@ const tests = {
     assert.ok((await ground(page)).light < before.light - 20, "what is cut away is still there");
 
     assert.equal(await page.locator(".chart .uplot").count(), 2);
+    const chart = page.locator(".chart .u-over").first();
+    await chart.click({ position: { x: 0.45 * (await chart.boundingBox()).width, y: 20 } }); // nearest to frame 2 of 0 to 4
+    await atFrame(page, 2);
     await page.locator("#scene summary").click();
     await page.locator("#scene-text:has-text('surface_tension')").waitFor();
     await page.locator("#provenance summary").click();

@@ -91,6 +91,10 @@ void find_lines(const sim::Surface& surface, FilmParts& parts) {
         return on_wire != nullptr && on_wire->components == 1 && v < on_wire->values.size() &&
                on_wire->values[v] != 0.0;
     };
+    // Where nothing is said about wires a film ends on one, but for a foam without an outside: it is cut at its periods.
+    const bool rims_are_wires = on_wire == nullptr && std::ranges::any_of(surface.regions, [](const auto& sides) {
+        return sides[0] <= 0 || sides[1] <= 0;
+    });
     std::vector<FilmParts::Ends> edges;
     edges.reserve(3 * surface.triangles.size());
     for (const auto& triangle : surface.triangles)
@@ -104,9 +108,9 @@ void find_lines(const sim::Surface& surface, FilmParts& parts) {
         while (end < edges.size() && edges[end] == edges[begin]) ++end;
         const auto& [a, b] = edges[begin];
         const std::size_t films = end - begin;
-        if (films == 1 || (films > 2 && wired(a) && wired(b)))
+        if ((films == 1 && rims_are_wires) || (films != 2 && wired(a) && wired(b)))
             parts.wires.push_back(edges[begin]);
-        else if (films > 2)
+        else if (films != 2)
             parts.borders.push_back(edges[begin]);
         begin = end;
     }

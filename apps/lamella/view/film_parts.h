@@ -21,8 +21,8 @@ struct FilmParts {
     std::vector<Vertex> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< in the frame's order
     std::vector<std::uint32_t> place;                     ///< of the frame's vertices: the first one at the same place
-    std::vector<Ends> borders;                            ///< edges where three films or more meet, in ascending order
-    std::vector<Ends> wires;  ///< edges that hold a film: its rim, or a wire through films; ascending too
+    std::vector<Ends> borders;  ///< edges where three films or more meet, or one ends without a wire; ascending
+    std::vector<Ends> wires;    ///< edges that hold a film: its rim, or a wire through films; ascending
 };
 
 /// Vertices at the same place count as one, so that a periodic foam, whose triangles share none, has borders too.
