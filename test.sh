@@ -100,3 +100,5 @@ else
     fuzz
 fi
 say "All tests passed"
+[ -d "$root/web/node_modules/esbuild" ] || say "Not tested: the page of lamella view, which npm was not there to build"
+[ -x "${CHROMIUM:-/usr/bin/chromium}" ] || say "Not tested: the page in a browser; there is no chromium"

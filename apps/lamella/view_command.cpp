@@ -46,11 +46,17 @@ std::string run_folder_of(const ViewOptions& options, const std::filesystem::pat
 }
 
 /// Starts `lamella run` on the scene. What is wrong with the scene is said before anything is started.
-std::unique_ptr<view::RunProcess> start_run(const ViewOptions& options, const std::filesystem::path& scene,
+std::unique_ptr<view::RunProcess> start_run(const ViewOptions& options,
+                                            const std::filesystem::path& scene,
                                             const std::string& folder) {
     scene::load_scene(scene, options.overrides, scene::all_solvers());
     std::vector<std::string> words{std::filesystem::read_symlink("/proc/self/exe").string(),
-                                   "run", scene.string(), "--out", folder, "--progress", "none"};
+                                   "run",
+                                   scene.string(),
+                                   "--out",
+                                   folder,
+                                   "--progress",
+                                   "none"};
     for (const std::string& change : options.overrides) words.insert(words.end(), {"--set", change});
     if (options.overwrite) words.emplace_back("--overwrite");
     words.insert(words.end(), options.of_run.begin(), options.of_run.end());
@@ -83,13 +89,15 @@ int view_command(const ViewOptions& options) {
     catch_stop_signals();
     if (run::is_run_folder(options.target)) {
         if (!options.folder.empty() || !options.overrides.empty() || options.overwrite || !options.of_run.empty())
-            throw InputError(fmt::format("{} is a run already: --out, --set, --overwrite, --until and --threads are for a scene",
-                                         options.target));
+            throw InputError(
+                fmt::format("{} is a run already: --out, --set, --overwrite, --until and --threads are for a scene",
+                            options.target));
         return serve(options.target, nullptr, options.port);
     }
     const std::filesystem::path scene = scene::resolve_scene_path(options.target);
     if (std::filesystem::is_directory(scene))
-        throw InputError(fmt::format("{} is neither a run folder (it has no scene.toml and run.json) nor a scene", options.target));
+        throw InputError(
+            fmt::format("{} is neither a run folder (it has no scene.toml and run.json) nor a scene", options.target));
     const std::string folder = run_folder_of(options, scene);
     const std::unique_ptr<view::RunProcess> process = start_run(options, scene, folder);
     if (const int code = wait_for_folder(*process, folder); code != 0) return code;
@@ -117,9 +125,12 @@ void add_view_command(CLI::App& app, int& exit_code) {
         ->type_name("KEY=VALUE");
     command->add_flag("--overwrite", options->overwrite, "Replace a run that is in the folder already");
     const auto hand_on = [options](const char* name) {
-        return [options, name](const std::string& value) { options->of_run.insert(options->of_run.end(), {name, value}); };
+        return [options, name](const std::string& value) {
+            options->of_run.insert(options->of_run.end(), {name, value});
+        };
     };
-    command->add_option_function<std::string>("--until", hand_on("--until"), "Stop a scene's run at this time")->type_name("T");
+    command->add_option_function<std::string>("--until", hand_on("--until"), "Stop a scene's run at this time")
+        ->type_name("T");
     command->add_option_function<std::string>("--threads", hand_on("--threads"), "Worker threads of a scene's run")
         ->check(CLI::Range(0, 4096))
         ->type_name("N");

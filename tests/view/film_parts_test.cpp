@@ -1,9 +1,10 @@
+#include "view/film_parts.h"
+
 #include "lamella/core/error.h"
 
 #include <gtest/gtest.h>
 
 #include "films.h"
-#include "view/film_parts.h"
 
 namespace lamella::app::view {
 namespace {
@@ -31,12 +32,13 @@ TEST(FilmParts, HasNormalsIntoTheLargerRegionWhateverTheTrianglesTurn) {
 }
 
 TEST(FilmParts, FindsBordersAndRims) {
-    const sim::Surface surface = three_sheets(4).surface;
+    const sim::Surface surface = with_outside(three_sheets(4).surface);
     const FilmParts parts = film_parts(surface);
     EXPECT_EQ(parts.borders.size(), 4u);
     EXPECT_EQ(parts.wires.size(), 3u * 3u * 4u);
     for (const auto& ends : parts.borders)
-        for (const std::uint32_t end : ends) EXPECT_EQ(std::abs(surface.position[end][0]) + std::abs(surface.position[end][1]), 0.0);
+        for (const std::uint32_t end : ends)
+            EXPECT_EQ(std::abs(surface.position[end][0]) + std::abs(surface.position[end][1]), 0.0);
 }
 
 TEST(FilmParts, FindsTheBordersOfTrianglesThatShareNoVertex) {
@@ -48,7 +50,7 @@ TEST(FilmParts, FindsTheBordersOfTrianglesThatShareNoVertex) {
         for (const std::uint32_t v : triangle) loose.position.push_back(shared.position[v]);
         loose.triangles.push_back({first, first + 1, first + 2});
     }
-    const FilmParts parts = film_parts(loose);
+    const FilmParts parts = film_parts(with_outside(loose));
     EXPECT_EQ(parts.vertices.size(), 75u);
     EXPECT_EQ(parts.borders.size(), 4u);
 }
@@ -59,8 +61,14 @@ TEST(FilmParts, TakesABorderAlongAWireForTheWire) {
     for (std::size_t v = 0; v < 5; ++v) on_wire.values[v] = 1.0;
     surface.vertex_fields.push_back(on_wire);
     const FilmParts parts = film_parts(surface);
-    EXPECT_TRUE(parts.borders.empty());
-    EXPECT_EQ(parts.wires.size(), 3u * 3u * 4u + 4u);
+    EXPECT_EQ(parts.wires.size(), 4u);
+    EXPECT_EQ(parts.borders.size(), 3u * 3u * 4u);  // films that end on nothing have a rim of liquid
+}
+
+TEST(FilmParts, TakesTheRimsOfAFoamWithoutOutsideForBorders) {
+    const FilmParts inside = film_parts(three_sheets(4).surface);  // regions 1, 2 and 3
+    EXPECT_TRUE(inside.wires.empty());
+    EXPECT_EQ(inside.borders.size(), 4u + 3u * 3u * 4u);
 }
 
 TEST(FilmParts, RefusesTrianglesWithoutTheirVertices) {

@@ -1,3 +1,5 @@
+#include "view/frame_message.h"
+
 #include "lamella/core/error.h"
 
 #include <gtest/gtest.h>
@@ -5,7 +7,6 @@
 
 #include "films.h"
 #include "view/colors.h"
-#include "view/frame_message.h"
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -20,7 +21,9 @@ std::uint32_t number_at(const std::string& bytes, std::size_t offset) {
     return value;
 }
 
-nlohmann::json header_of(const std::string& bytes) { return nlohmann::json::parse(bytes.substr(16, number_at(bytes, 8))); }
+nlohmann::json header_of(const std::string& bytes) {
+    return nlohmann::json::parse(bytes.substr(16, number_at(bytes, 8)));
+}
 
 /// One array as floats.
 std::vector<float> floats(const std::string& bytes, const std::string& set, const std::string& name) {
@@ -39,6 +42,7 @@ std::vector<float> floats(const std::string& bytes, const std::string& set, cons
 
 TEST(FrameMessage, HoldsWhatTheHeaderSays) {
     sim::Frame frame = three_sheets(4);
+    frame.surface = with_outside(frame.surface);
     frame.time = 0.25;
     frame.scalars.push_back({"energy", "J", std::numeric_limits<double>::quiet_NaN(), "of the films"});
     DetailLimits as_it_is;
@@ -51,7 +55,8 @@ TEST(FrameMessage, HoldsWhatTheHeaderSays) {
     EXPECT_EQ(header.at("time"), 0.25);
     EXPECT_TRUE(header.at("scalars").at(0).at("value").is_null());
     EXPECT_EQ(header.at("triangles").at("all"), 96);
-    const std::vector<float> position = floats(bytes, "vertices", "position"), height = floats(bytes, "vertex_fields", "height");
+    const std::vector<float> position = floats(bytes, "vertices", "position"),
+                             height = floats(bytes, "vertex_fields", "height");
     ASSERT_EQ(position.size(), 3u * 75u);
     ASSERT_EQ(height.size(), 75u);
     for (std::size_t v = 0; v < height.size(); ++v) EXPECT_EQ(height[v], position[3 * v + 2]);
@@ -63,9 +68,11 @@ TEST(FrameMessage, CutsCoarseFilmsIntoPiecesWithTheirValues) {
     const std::string bytes = frame_message(three_sheets(4));  // 96 triangles, 16 pieces each
     EXPECT_EQ(header_of(bytes).at("triangles").at("shown"), 96);
     EXPECT_EQ(floats(bytes, "face_fields", "sheet").size(), 16u * 96u);
-    const std::vector<float> position = floats(bytes, "vertices", "position"), height = floats(bytes, "vertex_fields", "height");
+    const std::vector<float> position = floats(bytes, "vertices", "position"),
+                             height = floats(bytes, "vertex_fields", "height");
     ASSERT_EQ(position.size(), 3 * height.size());
-    for (std::size_t v = 0; v < height.size(); ++v) EXPECT_NEAR(height[v], position[3 * v + 2], 1e-6);  // single precision
+    for (std::size_t v = 0; v < height.size(); ++v)
+        EXPECT_NEAR(height[v], position[3 * v + 2], 1e-6);  // single precision
 }
 
 TEST(FrameMessage, KeepsWholeNumbersWhole) {
@@ -73,7 +80,8 @@ TEST(FrameMessage, KeepsWholeNumbersWhole) {
     sim::Field label{"label", "-", 1, true, {}};
     for (std::size_t v = 0; v < frame.surface.position.size(); ++v) label.values.push_back(double(10 * v));
     frame.surface.vertex_fields.push_back(label);
-    for (const float value : floats(frame_message(frame), "vertex_fields", "label")) EXPECT_EQ(std::fmod(value, 10.0f), 0.0f);
+    for (const float value : floats(frame_message(frame), "vertex_fields", "label"))
+        EXPECT_EQ(std::fmod(value, 10.0f), 0.0f);
 }
 
 TEST(FrameMessage, ThinsOutAndSaysSo) {

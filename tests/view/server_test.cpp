@@ -1,3 +1,5 @@
+#include "view/server.h"
+
 #include "lamella/io/frame_files.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +9,6 @@
 #include "films.h"
 #include "view/run_process.h"
 #include "view/run_view.h"
-#include "view/server.h"
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -28,8 +29,11 @@ protected:
         outside = name;
         folder = outside / "run";
         fs::create_directories(folder / "frames");
-        write("scene.toml", "title = \"three sheets\"\nsolver = \"equilibrium\"\n[material]\nthickness = 3e-07\n[[bubble]]\nradius = 1.0\n");
-        write("run.json", R"({"title": "three sheets", "solver": "equilibrium", "state": "finished", "time_unit": "s"})");
+        write("scene.toml",
+              "title = \"three sheets\"\nsolver = \"equilibrium\"\n[material]\nthickness = 3e-07\n[[bubble]]\nradius = "
+              "1.0\n");
+        write("run.json",
+              R"({"title": "three sheets", "solver": "equilibrium", "state": "finished", "time_unit": "s"})");
         write("series.csv", "time[s],energy[J]\n0,1\n1,nan\n2,3\n");
         io::write_vtp(folder / "frames/000000.vtp", three_sheets(4));
         io::write_vtp(folder / "frames/000001.vtp", three_sheets(4));
@@ -55,6 +59,18 @@ protected:
 
     fs::path outside, folder;
 };
+
+TEST_F(ServerTest, CompressesNothing) {
+    const RunView run(folder, nullptr);
+    const Server server(run, kToken, 0);
+    httplib::Client client("127.0.0.1", server.port());
+    client.set_decompress(false);
+    for (const char* path : {"/", "/page.js", "/api/state", "/api/series", "/api/scene", "/api/frames/0"}) {
+        const auto result = client.Get(path, {{"Accept-Encoding", "gzip, deflate, br"}});
+        ASSERT_TRUE(result) << path;
+        EXPECT_FALSE(result->has_header("Content-Encoding")) << path;
+    }
+}
 
 TEST_F(ServerTest, AnswersWhatIsInTheFolder) {
     const RunView run(folder, nullptr);
@@ -97,8 +113,8 @@ TEST_F(ServerTest, ReadsNothingOutsideTheFolder) {
         expect_error(client.Get("/api/frames/" + std::string(frame) + "/regions"), 422, "outside the run folder");
     }
     EXPECT_EQ(client.Get("/api/frames/3")->status, 200);
-    for (const char* path : {"/../secret.vtp", "/api/../../secret.vtp", "/%2e%2e/secret.vtp", "/api/frames/../../secret.vtp",
-                             "/api/frames/..%2f..%2fsecret.vtp", "/scene.toml"})
+    for (const char* path : {"/../secret.vtp", "/api/../../secret.vtp", "/%2e%2e/secret.vtp",
+                             "/api/frames/../../secret.vtp", "/api/frames/..%2f..%2fsecret.vtp", "/scene.toml"})
         EXPECT_EQ(client.Get(path)->status, 404) << path;
     fs::remove(folder / "scene.toml");
     fs::create_symlink(outside / "secret.vtp", folder / "scene.toml");
@@ -110,7 +126,8 @@ TEST_F(ServerTest, RefusesOtherNamesThanItsOwn) {
     const Server server(run, kToken, 0);
     httplib::Client client("127.0.0.1", server.port());
     expect_error(client.Get("/api/state", {{"Host", "evil.example"}}), 403, "loopback");
-    expect_error(client.Get("/api/state", {{"Host", "evil.example:" + std::to_string(server.port())}}), 403, "loopback");
+    expect_error(client.Get("/api/state", {{"Host", "evil.example:" + std::to_string(server.port())}}), 403,
+                 "loopback");
     EXPECT_EQ(client.Get("/api/state", {{"Host", "localhost:" + std::to_string(server.port())}})->status, 200);
 }
 

@@ -1,7 +1,8 @@
+#include "view/smooth_films.h"
+
 #include <gtest/gtest.h>
 
 #include "films.h"
-#include "view/smooth_films.h"
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -43,7 +44,9 @@ sim::Surface sphere(std::uint32_t n) {
 double farthest_from_sphere(const SmoothFilms& films) {
     double error = 0.0;
     for (const auto& triangle : films.triangles) {  // flat ones are wrong in their middle
-        const Vec3 middle = (films.vertices[triangle[0]].position + films.vertices[triangle[1]].position + films.vertices[triangle[2]].position) / 3.0;
+        const Vec3 middle = (films.vertices[triangle[0]].position + films.vertices[triangle[1]].position +
+                             films.vertices[triangle[2]].position) /
+                            3.0;
         error = std::max(error, std::abs(norm(middle) - 1.0));
     }
     return error;
@@ -76,7 +79,7 @@ TEST(SmoothFilms, HaveUnitNormalsIntoTheLargerRegion) {
 }
 
 TEST(SmoothFilms, KeepMeetingOnABentBorder) {
-    sim::Surface surface = three_sheets(4).surface;
+    sim::Surface surface = with_outside(three_sheets(4).surface);
     for (Vec3& x : surface.position) x[0] += 0.3 * x[2] * x[2];
     const FilmParts parts = film_parts(surface);
     constexpr int kPieces = 3;
@@ -94,7 +97,7 @@ TEST(SmoothFilms, KeepMeetingOnABentBorder) {
 }
 
 TEST(SmoothFilms, KeepStraightRimsAndTheirCorners) {
-    const sim::Surface surface = three_sheets(3).surface;
+    const sim::Surface surface = with_outside(three_sheets(3).surface);
     for (const auto& segment : smooth_films(surface, film_parts(surface), 4).wires)
         for (const Vec3& end : segment) {
             const double radius = std::hypot(end[0], end[1]);
@@ -112,7 +115,8 @@ TEST(SmoothFilms, FollowTheCurvedTrianglesOfTheFrame) {
         for (std::size_t k = 0; k < 3; ++k)
             for (const double x : lifted(flat.position[t[k]]).v) nodes.values.push_back(x);
         for (std::size_t k = 0; k < 3; ++k)
-            for (const double x : lifted(0.5 * (flat.position[t[k]] + flat.position[t[(k + 1) % 3]])).v) nodes.values.push_back(x);
+            for (const double x : lifted(0.5 * (flat.position[t[k]] + flat.position[t[(k + 1) % 3]])).v)
+                nodes.values.push_back(x);
     }
     surface.face_fields = {nodes};
     const SmoothFilms films = smooth_films(surface, film_parts(surface), 4);

@@ -2,6 +2,8 @@
 // distance. What differs from ball to ball lies in textures and the corners of the squares number themselves: a hundred
 // thousand instances of a square are slow where there is no graphics card (3.5 s a picture with SwiftShader).
 import * as THREE from "three";
+import { Range } from "./field";
+import { BRIGHTER, REFLECTED } from "./interference";
 import { STUDIO } from "./studio";
 
 const VERTEX = /* glsl */ `
@@ -51,6 +53,7 @@ uniform sampler2D map;
 uniform vec2 range;
 uniform bool flat2d;
 uniform bool byField;
+uniform bool byThickness;       // the values are [nm]
 uniform mat4 viewProjection;
 varying vec2 vAt;
 varying vec3 vWorld;
@@ -59,10 +62,12 @@ varying float vRadius;
 varying float vValue;
 varying float vPicked;
 ${STUDIO}
+${REFLECTED}
 
 vec3 base() {
   if (!byField) return vec3(0.35, 0.5, 0.6);
-  if (!(vValue >= -3.0e38 && vValue <= 3.0e38)) return vec3(0.12);
+  if (unknown(vValue)) return vec3(0.12);
+  if (byThickness) return ${BRIGHTER.toFixed(1)} * reflected(vValue, 1.0);
   float x = clamp((vValue - range.x) / max(range.y - range.x, 1e-30), 0.0, 1.0);
   return texture2D(map, vec2(x * 255.0 / 256.0 + 0.5 / 256.0, 0.5)).rgb;
 }
@@ -90,7 +95,8 @@ void main() {
   vec3 n = (hit - vCenter) / vRadius;
   float cosine = clamp(-dot(n, ray), 0.0, 1.0);
   float edge = pow(1.0 - cosine, 4.0);
-  vec3 light = color * (0.42 + 0.38 * n.y + 0.35 * cosine) + (0.025 + 0.22 * edge) * studio(mat3(viewMatrix) * reflect(ray, n));
+  float up = (mat3(viewMatrix) * n).y;
+  vec3 light = color * (0.42 + 0.38 * up + 0.35 * cosine) + (0.025 + 0.22 * edge) * studio(mat3(viewMatrix) * reflect(ray, n));
   light += vPicked * (0.08 + 0.9 * smoothstep(0.55, 0.25, cosine));
   gl_FragColor = vec4(light, 1.0);
   vec4 projected = viewProjection * vec4(hit, 1.0);
@@ -110,7 +116,7 @@ export class Balls {
   readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>;
   private readonly viewProjection = new THREE.Matrix4();
 
-  constructor(map: THREE.Texture, clip: THREE.Vector4) {
+  constructor(reflected: Record<string, THREE.IUniform>, map: THREE.Texture, clip: THREE.Vector4) {
     const material = new THREE.ShaderMaterial({
       defines: { WIDTH },
       vertexShader: VERTEX,
@@ -124,7 +130,9 @@ export class Balls {
         balls: { value: null },
         values: { value: null },
         flat2d: { value: false },
+        ...reflected,
         byField: { value: false },
+        byThickness: { value: false },
         picked: { value: -1 },
         clip: { value: clip },
         map: { value: map },
@@ -158,7 +166,8 @@ export class Balls {
     if (uniform) uniform.value = index;
   }
 
-  show(position: Float32Array | null, radius: Float32Array, values: Float32Array | null, range: { low: number; high: number } | null, flat: boolean): void {
+  /// Without a range the values are thicknesses of films [nm], in their colors.
+  show(position: Float32Array | null, radius: Float32Array, values: Float32Array | null, range: Range | null, flat: boolean): void {
     const uniforms = this.object.material.uniforms;
     const set = (name: string, value: unknown): void => {
       const uniform = uniforms[name];
@@ -181,6 +190,7 @@ export class Balls {
     if (this.count !== count) this.setCount(count);
     set("flat2d", flat);
     set("byField", values !== null);
+    set("byThickness", range === null);
     set("range", new THREE.Vector2(range?.low ?? 0, range?.high ?? 1));
   }
 }

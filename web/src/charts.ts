@@ -4,7 +4,7 @@ import "uplot/dist/uPlot.min.css";
 import { SeriesPart } from "./api";
 import { nameText, tickTexts, unitText } from "./words";
 
-const FAVORITES = ["energy", "mean_radius", "energy_surface", "surface_energy", "total_area", "bubbles", "volume_error"];
+const FAVORITES = ["energy", "mean_radius", "energy_kinetic", "energy_surface", "surface_energy", "total_area", "bubbles", "volume_error"];
 const CHARTS = 2;
 const HEIGHT = 126;
 const COLORS = ["#8fc7e8", "#f0b775"];

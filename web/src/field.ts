@@ -38,10 +38,18 @@ export function rangeOf(values: Float32Array): Range | null {
   return low <= high ? { low, high } : null;
 }
 
+/// How thick the films are at each vertex, or at each particle of those that carry the film; nothing where it is one number.
+export function thicknessField(frame: Frame, place: "vertices" | "points"): Field | undefined {
+  return frame.fields.find((f) => f.name === "thickness" && f.place === place && f.components === 1 && f.unit === "m");
+}
+
+/// Whether there is anything that has the colors of films.
+export const hasFilms = (frame: Frame): boolean => frame.films !== null || thicknessField(frame, "points") !== undefined;
+
 /// What a frame looks best in when nobody has chosen: films in their own colors, balls by their size.
 export function defaultColoring(frame: Frame): string {
-  if (frame.films) return FILM_COLORS;
-  const best = ["radius", "thickness", "pressure", "volume"].map((name) => frame.fields.find((f) => f.name === name));
+  if (hasFilms(frame)) return FILM_COLORS;
+  const best = ["radius", "pressure", "volume"].map((name) => frame.fields.find((f) => f.name === name));
   const field = best.find((f) => f !== undefined) ?? frame.fields[0];
   return field ? fieldKey(field) : FILM_COLORS;
 }

@@ -1,7 +1,8 @@
 // The films: their interference colors times what they reflect, or a field.
 import * as THREE from "three";
-import { ColorTable, Films } from "./decode";
+import { Films } from "./decode";
 import { farthestFirst } from "./depth_order";
+import { REFLECTED } from "./interference";
 import { STUDIO } from "./studio";
 
 const VERTEX = /* glsl */ `
@@ -25,11 +26,6 @@ const FRAGMENT = /* glsl */ `
 uniform bool byField;
 uniform bool hasThickness;      // value is a thickness [nm]
 uniform float thickness;        // where there is none [nm]
-uniform sampler2D thin;         // thickness x cosine
-uniform sampler2D thick;        // 1 x cosine
-uniform vec2 tableSize;
-uniform float maxThickness;     // of the table [nm]
-uniform float index;            // refractive
 uniform sampler2D map;
 uniform vec2 range;
 uniform float opacity;
@@ -39,16 +35,7 @@ varying vec3 vNormal;
 varying float vValue;
 varying float vPicked;
 ${STUDIO}
-
-// What a film of this thickness reflects of white light, linear sRGB: centers of texels are the table's nodes.
-vec3 reflected(float nm, float cosine) {
-  float counted = max(nm, 0.0) * sqrt(1.0 - (1.0 - cosine * cosine) / (index * index)) / maxThickness;
-  float row = (sqrt(cosine) * (tableSize.y - 1.0) + 0.5) / tableSize.y;
-  if (counted > 1.0) return texture2D(thick, vec2(0.5, row)).rgb;
-  return texture2D(thin, vec2((sqrt(counted) * (tableSize.x - 1.0) + 0.5) / tableSize.x, row)).rgb;
-}
-
-bool unknown(float x) { return !(x >= -3.0e38 && x <= 3.0e38); }
+${REFLECTED}
 
 void main() {
   if (dot(vWorld, clip.xyz) > clip.w) discard;
@@ -71,16 +58,6 @@ void main() {
 }
 `;
 
-function halfTexture(values: Float32Array, width: number, height: number): THREE.DataTexture {
-  const halves = new Uint16Array(4 * width * height);
-  for (let i = 0; i < width * height; ++i)
-    for (let k = 0; k < 4; ++k) halves[4 * i + k] = THREE.DataUtils.toHalfFloat(k < 3 ? (values[3 * i + k] ?? 0) : 1);
-  const texture = new THREE.DataTexture(halves, width, height, THREE.RGBAFormat, THREE.HalfFloatType);
-  texture.minFilter = texture.magFilter = THREE.LinearFilter;
-  texture.needsUpdate = true;
-  return texture;
-}
-
 function middles(films: Films): Float32Array {
   const result = new Float32Array(films.corners.length);
   for (let i = 0; i < result.length; i += 3)
@@ -94,7 +71,7 @@ export class FilmMesh {
   private corners: Uint32Array = new Uint32Array(0); // of the triangles, in the frame's order
   readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>;
 
-  constructor(table: ColorTable, map: THREE.Texture, clip: THREE.Vector4) {
+  constructor(reflected: Record<string, THREE.IUniform>, map: THREE.Texture, clip: THREE.Vector4) {
     const material = new THREE.ShaderMaterial({
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
@@ -109,11 +86,7 @@ export class FilmMesh {
         byField: { value: false },
         hasThickness: { value: false },
         thickness: { value: 400 },
-        thin: { value: halfTexture(table.thin, table.thicknesses, table.cosines) },
-        thick: { value: halfTexture(table.thick, 1, table.cosines) },
-        tableSize: { value: new THREE.Vector2(table.thicknesses, table.cosines) },
-        maxThickness: { value: table.maxThickness },
-        index: { value: table.index },
+        ...reflected,
         map: { value: map },
         range: { value: new THREE.Vector2(0, 1) },
         opacity: { value: 1 },

@@ -2,6 +2,7 @@
 import { cssGradient } from "./colormap";
 import { ColorTable, headOn } from "./decode";
 import { Range } from "./field";
+import { BRIGHTER } from "./interference";
 import { nameText, numberText, quantityText, unitText } from "./words";
 
 const encode = (x: number): number => Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
@@ -9,7 +10,6 @@ const encode = (x: number): number => Math.round(255 * (x <= 0.0031308 ? 12.92 *
 /// The thickest film of the scale [nm]; beyond, colors are faint.
 const SCALE_END = 1500;
 const SCALE_PIXELS = 600;
-const BRIGHTER = 9; // a film reflects a few percent of the light
 
 /// A strip of what films of 0 to SCALE_END reflect head-on.
 export function thicknessStrip(table: ColorTable): HTMLCanvasElement {

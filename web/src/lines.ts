@@ -33,7 +33,9 @@ void main() {
   vec3 n = normalize(vNormal);
   float cosine = clamp(dot(n, toEye), 0.0, 1.0);
   float edge = pow(1.0 - cosine, 3.0);
-  vec3 light = tint * (0.25 + 0.25 * n.y) + gloss * (0.15 + edge) * studio(mat3(viewMatrix) * reflect(-toEye, n)) * tint;
+  // The window in a thin tube is smaller than a pixel: as bright as it is, it would only sparkle.
+  vec3 room = min(studio(mat3(viewMatrix) * reflect(-toEye, n)), vec3(2.5));
+  vec3 light = tint * (0.25 + 0.25 * (mat3(viewMatrix) * n).y) + gloss * (0.15 + edge) * room * tint;
   gl_FragColor = vec4(light, 1.0);
 }
 `;

@@ -2,11 +2,12 @@
 import { api, Region, State } from "./api";
 import { Charts } from "./charts";
 import { Frame } from "./decode";
-import { defaultColoring, fieldKey, FILM_COLORS, findField, magnitudes, Range, rangeOf } from "./field";
+import { defaultColoring, fieldKey, FILM_COLORS, findField, hasFilms, magnitudes, Range, rangeOf, thicknessField } from "./field";
 import { fieldLegend, filmLegend, thicknessStrip } from "./legend";
 import { byId, dictionary, Message } from "./page";
 import { Player } from "./player";
 import { Look, Pick, Stage } from "./stage";
+import { showProvenance, showText } from "./texts";
 import { countText, nameText, numberText, quantityText } from "./words";
 import "./page.css";
 
@@ -40,8 +41,9 @@ function look(): Look {
   return { coloring: coloring.value, range, thicknessNm: Number(thickness.value), opacity: Number(opacity.value) };
 }
 
+/// Of the films' own thickness; of the slider's where they have none.
 function thicknessRange(of: Frame): Range {
-  const field = of.fields.find((f) => f.name === "thickness" && f.place === "vertices");
+  const field = thicknessField(of, "vertices") ?? thicknessField(of, "points");
   const known = field ? rangeOf(field.values) : null;
   return known ? { low: NM * known.low, high: NM * known.high } : { low: Number(thickness.value), high: Number(thickness.value) };
 }
@@ -52,13 +54,12 @@ function redraw(): void {
   const field = findField(frame, coloring.value);
   const values = field ? magnitudes(field) : null;
   if (!hold.checked || !range) range = values ? rangeOf(values) : null;
-  const hasThickness = frame.fields.some((f) => f.name === "thickness" && f.place === "vertices");
-  byId("thickness-row").hidden = field !== undefined || !frame.films || hasThickness;
+  byId("thickness-row").hidden = field !== undefined || !frame.films || thicknessField(frame, "vertices") !== undefined;
   byId("opacity-row").hidden = !field || field.place === "points";
   byId("hold-row").hidden = !field;
   byId("thickness-text").textContent = `${thickness.value}\u202fnm`;
   const legend = byId("legend");
-  legend.hidden = !field && !frame.films;
+  legend.hidden = !field && !hasFilms(frame);
   if (field) fieldLegend(legend, field.name, field.unit, field.components, range);
   else if (strip) filmLegend(legend, strip, thicknessRange(frame));
   stage?.show(frame, look());
@@ -66,7 +67,7 @@ function redraw(): void {
 }
 
 function offerColorings(of: Frame): void {
-  const keys = [...(of.films ? [FILM_COLORS] : []), ...of.fields.filter((f) => f.name !== "on_wire").map(fieldKey)];
+  const keys = [...(hasFilms(of) ? [FILM_COLORS] : []), ...of.fields.filter((f) => f.name !== "on_wire").map(fieldKey)];
   if (keys.join() === [...coloring.options].map((o) => o.value).join()) return;
   const before = coloring.value;
   coloring.replaceChildren(
@@ -363,27 +364,6 @@ function listenToPicks(): void {
     picked = hit?.kind === "ball" ? { ...hit, id: (frame && idsOf(frame)?.[hit.index]) ?? null } : hit;
     void showPicked();
   });
-}
-
-async function showText(id: string, load: () => Promise<string>): Promise<void> {
-  try {
-    byId(id).textContent = await load();
-  } catch (error) {
-    byId(id).textContent = (error as Error).message;
-  }
-}
-
-async function showProvenance(): Promise<void> {
-  const place = byId("provenance-text");
-  try {
-    const record = JSON.parse(await api.provenance()) as Record<string, unknown>;
-    const rows: [string, string][] = [];
-    for (const [key, value] of Object.entries(record))
-      if (typeof value === "string" || typeof value === "number") rows.push([nameText(key), typeof value === "number" ? numberText(value) : value]);
-    place.replaceChildren(dictionary(rows));
-  } catch (error) {
-    place.textContent = (error as Error).message;
-  }
 }
 
 async function start(): Promise<void> {

@@ -3,9 +3,10 @@ import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Balls } from "./balls";
 import { mapTexture } from "./colormap";
-import { Box, ColorTable, Frame } from "./decode";
-import { FILM_COLORS, findField, magnitudes, Range } from "./field";
+import { Box, ColorTable, FieldPlace, Frame } from "./decode";
+import { FILM_COLORS, findField, magnitudes, Range, thicknessField } from "./field";
 import { FilmMesh } from "./films";
+import { reflectedUniforms } from "./interference";
 import { Tubes } from "./lines";
 import { Pace } from "./pace";
 import { pickBall, pickRegion, Plane, Ray } from "./picking";
@@ -115,10 +116,11 @@ export class Stage {
     canvas.addEventListener("webglcontextlost", onLost);
 
     const map = mapTexture();
-    this.films = new FilmMesh(table, map, this.clip);
+    const reflected = reflectedUniforms(table);
+    this.films = new FilmMesh(reflected, map, this.clip);
     this.borders = new Tubes(new THREE.Color(0.5, 0.56, 0.62), 0.35, this.clip);
     this.wires = new Tubes(new THREE.Color(0.72, 0.5, 0.28), 0.5, this.clip);
-    this.balls = new Balls(map, this.clip);
+    this.balls = new Balls(reflected, map, this.clip);
     const background = fullScreen(BACKGROUND);
     background.renderOrder = -1;
     this.scene.add(background, this.films.object, this.borders.object, this.wires.object, this.balls.object, this.boxLines);
@@ -194,20 +196,21 @@ export class Stage {
     if (this.shown?.frame !== frame || this.shown.coloring !== look.coloring) {
       this.setBounds(frame);
       const size = this.bounds.getSize(new THREE.Vector3()).length();
-      const thickness = frame.fields.find((f) => f.name === "thickness" && f.place === "vertices");
-      const nanometers = !field && thickness ? thickness.values.map((t) => 1e9 * t) : null;
-      const values = field ? magnitudes(field) : nanometers;
-      const ofFilms = !field || field.place !== "points";
-      this.films.show(frame.films, ofFilms ? values : null, field?.place === "triangles");
+      /// What is colored at this place: the chosen field, or the thickness [nm].
+      const values = (...places: FieldPlace[]): Float32Array | null => {
+        if (field) return places.includes(field.place) ? magnitudes(field) : null;
+        return thicknessField(frame, places.includes("points") ? "points" : "vertices")?.values.map((t) => 1e9 * t) ?? null;
+      };
+      this.films.show(frame.films, values("vertices", "triangles"), field?.place === "triangles");
       this.borders.show(frame.films?.borders ?? null, 0.0011 * size);
       this.wires.show(frame.films?.wires ?? null, 0.0024 * size);
       this.radius = this.radii(frame, size);
-      this.balls.show(frame.points?.position ?? null, this.radius, field?.place === "points" ? values : null, look.range, flat);
+      this.balls.show(frame.points?.position ?? null, this.radius, values("points"), field ? look.range : null, flat);
       this.showBox(frame.box);
       this.shown = { frame, coloring: look.coloring };
     }
     if (field && field.place !== "points") this.films.colorByField(look.range?.low ?? 0, look.range?.high ?? 1, look.opacity);
-    else this.films.colorByFilm(frame.fields.some((f) => f.name === "thickness" && f.place === "vertices"), look.thicknessNm);
+    else this.films.colorByFilm(thicknessField(frame, "vertices") !== undefined, look.thicknessNm);
     const range = this.balls.object.material.uniforms["range"];
     if (range && look.range) range.value = new THREE.Vector2(look.range.low, look.range.high);
     this.controls.enableRotate = !flat;
@@ -223,11 +226,12 @@ export class Stage {
     return this.distanceToFit({ right: right!, up: up!, back: back! }) > this.camera.position.distanceTo(this.controls.target);
   }
 
-  /// Of balls their own; particles without one are drawn small beside their distance from each other.
+  /// Of balls their own; particles without one are small beside their distance from each other, unless they carry a film.
   private radii(frame: Frame, size: number): Float32Array {
     if (!frame.points) return new Float32Array(0);
     const count = frame.points.position.length / 3;
-    return frame.points.radius ?? new Float32Array(count).fill((0.2 * size) / Math.sqrt(count));
+    const share = thicknessField(frame, "points") ? 0.5 : 0.2;
+    return frame.points.radius ?? new Float32Array(count).fill((share * size) / Math.sqrt(count));
   }
 
   private setBounds(frame: Frame): void {

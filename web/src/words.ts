@@ -23,7 +23,9 @@ export function numberText(value: number | null, digits = 4): string {
 
 export function quantityText(value: number | null, unit: string, digits = 4): string {
   const text = numberText(value, digits);
-  return unitText(unit) === "" || text === "unknown" ? text : `${text}\u202f${unitText(unit)}`;
+  const itsUnit = unitText(unit);
+  if (itsUnit === "" || text === "unknown") return text;
+  return itsUnit === "°" ? `${text}°` : `${text}\u202f${itsUnit}`;
 }
 
 /// 1008600 -> "1,008,600".

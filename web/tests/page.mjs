@@ -40,8 +40,17 @@ function view(...words) {
   });
 }
 
-async function open(address, size = { width: 800, height: 520 }, phone = false) {
-  const page = await browser.newPage({ viewport: size, isMobile: phone, hasTouch: phone });
+/// What a browser without WebGL does. Pages that nobody looks at are opened in such a one: drawing is what takes time here.
+function withoutWebGL() {
+  const context = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+    return kind.startsWith("webgl") ? null : context.call(this, kind, ...more);
+  };
+}
+
+async function open(address, { width = 800, height = 520, phone = false, blind = false } = {}) {
+  const page = await browser.newPage({ viewport: { width, height }, isMobile: phone, hasTouch: phone });
+  if (blind) await page.addInitScript(withoutWebGL);
   page.faults = [];
   page.on("pageerror", (error) => page.faults.push(error.message));
   await page.goto(address);
@@ -95,6 +104,28 @@ async function until(words, value) {
   assert.fail(`not within half a minute: ${words}`);
 }
 
+/// A frame of particles on a sphere, thicker towards the bottom, as apps/lamella/view/message.h has it.
+function particleMessage(count) {
+  const position = new Float32Array(3 * count);
+  const thickness = new Float32Array(count);
+  for (let i = 0; i < count; ++i) {
+    const z = 1 - (2 * i + 1) / count;
+    position.set([Math.sqrt(1 - z * z) * Math.cos(2.4 * i), Math.sqrt(1 - z * z) * Math.sin(2.4 * i), z], 3 * i);
+    thickness[i] = 4e-7 * (1 - z);
+  }
+  const arrays = [
+    { set: "points", name: "position", unit: "m", type: "f32", components: 3, count, offset: 0 },
+    { set: "point_fields", name: "thickness", unit: "m", type: "f32", components: 1, count, offset: 12 * count },
+  ];
+  const shown = { shown: count, all: count };
+  const header = Buffer.from(JSON.stringify({ solver: "particles", time: 0, time_unit: "s", step: 0, box: null, triangles: { shown: 0, all: 0 }, points: shown, scalars: [], arrays }));
+  const padded = Buffer.concat([header, Buffer.alloc((4 - (header.length % 4)) % 4, " ")]);
+  const intro = Buffer.alloc(16);
+  intro.write("LMLA");
+  [1, padded.length, 16 * count].forEach((value, k) => intro.writeUInt32LE(value, 4 + 4 * k));
+  return Buffer.concat([intro, padded, Buffer.from(position.buffer), Buffer.from(thickness.buffer)]);
+}
+
 const tests = {
   async "films of 300 nm are in color, black films are dark"() {
     const colored = await open((await view(run("equilibrium/double-bubble-small", "films", "--set", "material.thickness=3e-7"))).address);
@@ -144,6 +175,9 @@ const tests = {
     assert.ok((await ground(page)).light < before.light - 20, "what is cut away is still there");
 
     assert.equal(await page.locator(".chart .uplot").count(), 2);
+    const chart = page.locator(".chart .u-over").first();
+    await chart.click({ position: { x: 0.45 * (await chart.boundingBox()).width, y: 20 } }); // nearest to frame 2 of 0 to 4
+    await atFrame(page, 2);
     await page.locator("#scene summary").click();
     await page.locator("#scene-text:has-text('surface_tension')").waitFor();
     await page.locator("#provenance summary").click();
@@ -159,11 +193,11 @@ const tests = {
   async "a damaged frame gives a message, and the others are still shown"() {
     const folder = run("vortex_sheet/double-bubble-small", "damaged", "--until", "0.005");
     truncateSync(join(folder, "frames/000001.vtp"), 4000);
-    const page = await open((await view(folder)).address);
+    const page = await open((await view(folder)).address, { blind: true });
     await atFrame(page, 0);
     await page.keyboard.press("ArrowRight");
-    await page.locator("#message").waitFor();
-    assert.match(await page.locator("#message").innerText(), /Frame 1 cannot be shown: .*000001\.vtp/);
+    await page.locator("#message:has-text('Frame 1 cannot be shown')").waitFor();
+    assert.match(await page.locator("#message").innerText(), /000001\.vtp/);
     await page.keyboard.press("ArrowRight");
     await atFrame(page, 2);
     assert.equal(await page.locator("#message").isVisible(), false);
@@ -173,14 +207,7 @@ const tests = {
   async "a run without frames, and a browser without WebGL, say so"() {
     const folder = run("equilibrium/catenoid-0.8-small", "bare");
     const { address } = await view(folder);
-    const blind = await open(address);
-    await blind.addInitScript(() => {
-      const context = HTMLCanvasElement.prototype.getContext;
-      HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
-        return kind.startsWith("webgl") ? null : context.call(this, kind, ...more);
-      };
-    });
-    await blind.reload();
+    const blind = await open(address, { blind: true });
     await blind.locator("#message:has-text('This browser has no WebGL 2')").waitFor();
     await atFrame(blind, 1);
     assert.match(await blind.locator("#numbers-text").innerText(), /surface energy\s+\d/);
@@ -210,7 +237,7 @@ const tests = {
     await page.keyboard.press("End"); // others have gone by then: the bubble is followed by its id, not by its place
     await atFrame(page, Number(await page.locator("#scrub").getAttribute("max")));
     assert.match(await page.locator("#picked-text").innerText(), new RegExp(`\\bid\\s+${id}\\b|not there at this time`));
-    const phone = await open(address, { width: 390, height: 780 }, true);
+    const phone = await open(address, { width: 390, height: 780, phone: true });
     await atFrame(phone, 0);
     assert.equal(await phone.evaluate(() => document.documentElement.scrollWidth), 390, "the page is wider than the phone");
     await phone.locator("#forward").tap();
@@ -220,12 +247,42 @@ const tests = {
     assert.deepEqual([...page.faults, ...phone.faults], []);
   },
 
+  async "particles have the colors of the film that they carry, and fingers turn and zoom"() {
+    const { address } = await view(join(folder, "foam"));
+    const page = await browser.newPage({ viewport: { width: 390, height: 780 }, isMobile: true, hasTouch: true });
+    page.faults = [];
+    page.on("pageerror", (error) => page.faults.push(error.message));
+    await page.route("**/api/frames/*", (route) => route.fulfill({ body: particleMessage(3000), contentType: "application/octet-stream" }));
+    await page.goto(address);
+    await atFrame(page, 0);
+    assert.equal(await page.locator("#coloring").inputValue(), "film colors");
+    assert.match(await page.locator("#legend").innerText(), /Film thickness 0\.133 – 800 nm/);
+    const before = await colors(page, ...MIDDLE);
+    assert.ok(before.saturation > 0.2 && before.light > 20, JSON.stringify(before));
+
+    const touch = await page.context().newCDPSession(page);
+    const fingers = async (type, ...points) => touch.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+    await fingers("touchStart", [195, 150]);
+    for (let y = 160; y <= 290; y += 10) await fingers("touchMove", [195, y]);
+    await fingers("touchEnd");
+    const turned = await colors(page, ...MIDDLE); // from the thin top now
+    assert.ok(Math.abs(turned.mean[2] - before.mean[2]) + Math.abs(turned.mean[0] - before.mean[0]) > 10, JSON.stringify({ before, turned }));
+    const corner = await colors(page, 0.02, 0.2, 0.1, 0.1);
+    await fingers("touchStart", [185, 200], [205, 200]);
+    for (let d = 20; d <= 120; d += 10) await fingers("touchMove", [195 - d, 200], [195 + d, 200]);
+    await fingers("touchEnd");
+    const near = await colors(page, 0.02, 0.2, 0.1, 0.1);
+    assert.ok(near.light > corner.light + 10, JSON.stringify({ corner, near }));
+    assert.equal(await page.locator("#picked-text dl").count(), 0, "a gesture is no tap");
+    assert.deepEqual(page.faults, []);
+  },
+
   async "nothing outside is read, and nothing is controlled without the token"() {
     const refused = spawnSync(PROGRAM, ["view", join(folder, "foam"), "--until", "3"], { encoding: "utf8" });
     assert.equal(refused.status, 2);
     assert.match(refused.stderr, /is a run already: .*--until/);
     const { address } = await view(join(folder, "foam"));
-    const page = await open(address);
+    const page = await open(address, { blind: true });
     await atFrame(page, 0);
     const answers = await page.evaluate(async () => {
       const status = async (path, options) => (await fetch(path, options)).status;
@@ -255,7 +312,7 @@ const tests = {
     await page.locator("#run-stop").click();
     await page.locator("#run-state:has-text('interrupted')").waitFor({ timeout: 30000 });
     assert.ok(existsSync(join(folder, "live/checkpoint.h5")), "a stopped run has its checkpoint");
-    const stranger = await open(new URL("/", address).href);
+    const stranger = await open(new URL("/", address).href, { blind: true });
     await stranger.waitForSelector("body[data-frame]", { state: "attached", timeout: 60000 });
     assert.equal(await stranger.locator("#run-buttons").isVisible(), false);
     const ended = new Promise((resolve) => server.on("exit", resolve));

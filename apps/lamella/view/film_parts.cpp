@@ -18,8 +18,8 @@ void check(const sim::Surface& surface) {
     for (std::size_t f = 0; f < surface.triangles.size(); ++f)
         for (const std::uint32_t v : surface.triangles[f])
             if (v >= surface.position.size())
-                throw InputError(fmt::format("damaged frame: triangle {} refers to vertex {} of {}", f, v,
-                                             surface.position.size()));
+                throw InputError(
+                    fmt::format("damaged frame: triangle {} refers to vertex {} of {}", f, v, surface.position.size()));
 }
 
 /// For each vertex the first one at the same place.
@@ -27,7 +27,8 @@ std::vector<std::uint32_t> places(const std::vector<Vec3>& position) {
     std::vector<std::uint32_t> order(position.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](std::uint32_t v) { return std::tuple(position[v][0], position[v][1], position[v][2]); };
-    std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
+    std::ranges::sort(order,
+                      [&](std::uint32_t a, std::uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
     std::vector<std::uint32_t> place(position.size());
     for (std::size_t i = 0; i < order.size(); ++i)
         place[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? place[order[i - 1]] : order[i];
@@ -51,8 +52,8 @@ struct Corner {
     }
 };
 
-/// What a triangle adds to the normal at its corner `at`, pointing into the larger region of its film. With these weights
-/// the normal of a vertex is exact where it and its neighbors lie on a sphere, as bubbles do nearly [Max99].
+/// What a triangle adds to the normal at its corner `at`, pointing into the larger region of its film. With these
+/// weights the normal of a vertex is exact where it and its neighbors lie on a sphere, as bubbles do nearly [Max99].
 Vec3 normal_part(const sim::Surface& surface, std::size_t f, std::size_t at) {
     const auto& triangle = surface.triangles[f];
     const Vec3& x = surface.position[triangle[at]];
@@ -87,8 +88,13 @@ void split_vertices(const sim::Surface& surface, FilmParts& parts) {
 void find_lines(const sim::Surface& surface, FilmParts& parts) {
     const sim::Field* on_wire = surface.find_of_vertices("on_wire");
     const auto wired = [&](std::uint32_t v) {
-        return on_wire != nullptr && on_wire->components == 1 && v < on_wire->values.size() && on_wire->values[v] != 0.0;
+        return on_wire != nullptr && on_wire->components == 1 && v < on_wire->values.size() &&
+               on_wire->values[v] != 0.0;
     };
+    // Where nothing is said about wires a film ends on one, but for a foam without an outside: it is cut at its periods.
+    const bool rims_are_wires = on_wire == nullptr && std::ranges::any_of(surface.regions, [](const auto& sides) {
+        return sides[0] <= 0 || sides[1] <= 0;
+    });
     std::vector<FilmParts::Ends> edges;
     edges.reserve(3 * surface.triangles.size());
     for (const auto& triangle : surface.triangles)
@@ -102,9 +108,9 @@ void find_lines(const sim::Surface& surface, FilmParts& parts) {
         while (end < edges.size() && edges[end] == edges[begin]) ++end;
         const auto& [a, b] = edges[begin];
         const std::size_t films = end - begin;
-        if (films == 1 || (films > 2 && wired(a) && wired(b)))
+        if ((films == 1 && rims_are_wires) || (films != 2 && wired(a) && wired(b)))
             parts.wires.push_back(edges[begin]);
-        else if (films > 2)
+        else if (films != 2)
             parts.borders.push_back(edges[begin]);
         begin = end;
     }

@@ -28,7 +28,9 @@ void append(std::vector<float>& out, const Vec3& x) {
 }
 
 /// Only what can be a color: a number, a vector's length, a tensor's. The corners of curved triangles are not.
-bool can_be_shown(const sim::Field& field) { return field.components == 1 || field.components == 3 || field.components == 9; }
+bool can_be_shown(const sim::Field& field) {
+    return field.components == 1 || field.components == 3 || field.components == 9;
+}
 
 void check_length(const sim::Field& field, std::size_t items) {
     if (field.values.size() != items * static_cast<std::size_t>(field.components))
@@ -55,12 +57,14 @@ auto item_of(const sim::Field& field, Item at) {
     };
 }
 
-/// The vertex's value: of a field of whole numbers that of the nearest corner, and nothing is known between unknown values.
+/// The vertex's value: of a field of whole numbers that of the nearest corner, and nothing is known between unknown
+/// values.
 double between(const sim::Field& field, const SmoothFilms::Vertex& vertex, std::size_t component) {
     const auto value = [&](std::size_t corner) {
         return field.values[vertex.sources[corner] * static_cast<std::size_t>(field.components) + component];
     };
-    if (field.integer) return value(static_cast<std::size_t>(std::ranges::max_element(vertex.weights) - vertex.weights.begin()));
+    if (field.integer)
+        return value(static_cast<std::size_t>(std::ranges::max_element(vertex.weights) - vertex.weights.begin()));
     double sum = 0.0;
     for (std::size_t corner = 0; corner < 3; ++corner)
         if (vertex.weights[corner] > 0.0) sum += vertex.weights[corner] * value(corner);
@@ -68,9 +72,13 @@ double between(const sim::Field& field, const SmoothFilms::Vertex& vertex, std::
 }
 
 /// Eight bits would be steps of half a degree, in which a flat film mirrors a bent window.
-std::int16_t normal_number(double x) { return static_cast<std::int16_t>(std::lround(32767.0 * std::clamp(x, -1.0, 1.0))); }
+std::int16_t normal_number(double x) {
+    return static_cast<std::int16_t>(std::lround(32767.0 * std::clamp(x, -1.0, 1.0)));
+}
 
-void add_segments(Message& message, const std::string& set, const std::string& unit,
+void add_segments(Message& message,
+                  const std::string& set,
+                  const std::string& unit,
                   const std::vector<SmoothFilms::Segment>& segments) {
     std::vector<float> values;
     for (const auto& [a, b] : segments) {
@@ -98,7 +106,8 @@ void add_film_fields(Message& message, const sim::Surface& surface, const Smooth
     for (const sim::Field& field : surface.face_fields) {
         check_length(field, surface.triangles.size());
         if (can_be_shown(field))
-            add_field(message, "face_fields", field, films.face.size(), item_of(field, [&](std::size_t i) { return films.face[i]; }));
+            add_field(message, "face_fields", field, films.face.size(),
+                      item_of(field, [&](std::size_t i) { return films.face[i]; }));
     }
 }
 
@@ -159,14 +168,15 @@ std::string frame_message(const sim::Frame& frame, const DetailLimits& limits) {
     for (const sim::Scalar& scalar : frame.scalars)
         scalars.push_back(
             {{"name", scalar.name}, {"unit", scalar.unit}, {"value", number(scalar.value)}, {"text", scalar.text}});
-    return message.finish({{"solver", frame.solver},
-                           {"time", frame.time},
-                           {"time_unit", frame.time_unit},
-                           {"step", frame.step},
-                           {"box", frame.box ? box_json(*frame.box) : Json(nullptr)},
-                           {"triangles", {{"shown", surface.triangles.size()}, {"all", frame.surface.triangles.size()}}},
-                           {"points", {{"shown", points.size()}, {"all", frame.points.size()}}},
-                           {"scalars", scalars}});
+    return message.finish(
+        {{"solver", frame.solver},
+         {"time", frame.time},
+         {"time_unit", frame.time_unit},
+         {"step", frame.step},
+         {"box", frame.box ? box_json(*frame.box) : Json(nullptr)},
+         {"triangles", {{"shown", surface.triangles.size()}, {"all", frame.surface.triangles.size()}}},
+         {"points", {{"shown", points.size()}, {"all", frame.points.size()}}},
+         {"scalars", scalars}});
 }
 
 std::string regions_text(const sim::Frame& frame) {

@@ -14,8 +14,8 @@ struct DetailLimits {
     std::size_t smooth = 30'000;  ///< triangles that coarser films may be cut into to look smooth
 };
 
-/// A frame as the page draws it (message.h): films cut apart along their borders and smooth (smooth_films.h), borders and
-/// wires as segments, points, every field of one, three or nine components in single precision.
+/// A frame as the page draws it (message.h): films cut apart along their borders and smooth (smooth_films.h), borders
+/// and wires as segments, points, every field of one, three or nine components in single precision.
 /// @throws InputError  the frame contradicts itself
 std::string frame_message(const sim::Frame& frame, const DetailLimits& limits = {});
 

@@ -128,7 +128,8 @@ private:
                 const std::uint32_t b = parts_.place[surface_.triangles[face][(k + 1) % 3]];
                 const auto it = std::ranges::lower_bound(lines_, Ends{std::min(a, b), std::max(a, b)});
                 if (it != lines_.end() && *it == Ends{std::min(a, b), std::max(a, b)})
-                    curves_[static_cast<std::size_t>(it - lines_.begin())] = a < b ? patch.edge[k] : reversed(patch.edge[k]);
+                    curves_[static_cast<std::size_t>(it - lines_.begin())] =
+                        a < b ? patch.edge[k] : reversed(patch.edge[k]);
             }
         }
     }
@@ -170,7 +171,11 @@ private:
     std::vector<Inner> curves_;  // one per line
 };
 
-void add_pieces(const FilmParts& parts, const sim::Surface& surface, const Patch& patch, std::uint32_t face, std::uint32_t pieces,
+void add_pieces(const FilmParts& parts,
+                const sim::Surface& surface,
+                const Patch& patch,
+                std::uint32_t face,
+                std::uint32_t pieces,
                 SmoothFilms& result) {
     const auto first = static_cast<std::uint32_t>(result.vertices.size());
     const auto& corners = parts.triangles[face];
@@ -191,7 +196,8 @@ void add_pieces(const FilmParts& parts, const sim::Surface& surface, const Patch
     for (std::uint32_t i = 0; i < pieces; ++i)
         for (std::uint32_t j = 0; i + j < pieces; ++j) {
             result.triangles.push_back({number(i, j), number(i, j + 1), number(i + 1, j)});
-            if (i + j + 1 < pieces) result.triangles.push_back({number(i, j + 1), number(i + 1, j + 1), number(i + 1, j)});
+            if (i + j + 1 < pieces)
+                result.triangles.push_back({number(i, j + 1), number(i + 1, j + 1), number(i + 1, j)});
         }
     result.face.resize(result.triangles.size(), face);
 }
@@ -199,7 +205,8 @@ void add_pieces(const FilmParts& parts, const sim::Surface& surface, const Patch
 SmoothFilms as_they_are(const sim::Surface& surface, const FilmParts& parts) {
     SmoothFilms result;
     for (const FilmParts::Vertex& v : parts.vertices)
-        result.vertices.push_back({surface.position[v.source], v.normal, v.regions, {v.source, v.source, v.source}, {1.0, 0.0, 0.0}});
+        result.vertices.push_back(
+            {surface.position[v.source], v.normal, v.regions, {v.source, v.source, v.source}, {1.0, 0.0, 0.0}});
     result.triangles = parts.triangles;
     for (std::uint32_t f = 0; f < parts.triangles.size(); ++f) result.face.push_back(f);
     for (const auto& [a, b] : parts.borders) result.borders.push_back({surface.position[a], surface.position[b]});

@@ -28,10 +28,10 @@ struct SmoothFilms {
 
 /// The films with each triangle in `pieces` x `pieces` pieces, the lines with each edge in `pieces`.
 ///
-/// Pieces lie on a cubic patch over the triangle: the frame's own quadratic triangle where it has one (sim::kCurvedNodes),
-/// else the patch that the normals of its corners give [Vlachos01]. Edges of borders and wires are cubics that pass
-/// their vertices without a kink unless there is a corner or a junction, the same for all films that meet there.
-/// One piece: the triangles as they are.
+/// Pieces lie on a cubic patch over the triangle: the frame's own quadratic triangle where it has one
+/// (sim::kCurvedNodes), else the patch that the normals of its corners give [Vlachos01]. Edges of borders and wires are
+/// cubics that pass their vertices without a kink unless there is a corner or a junction, the same for all films that
+/// meet there. One piece: the triangles as they are.
 SmoothFilms smooth_films(const sim::Surface& surface, const FilmParts& parts, int pieces);
 
 }  // namespace lamella::app::view
