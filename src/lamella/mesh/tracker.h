@@ -18,6 +18,7 @@ struct TrackerOptions {
     double shortest_edge = 0.55;       ///< shorter ones are collapsed
     double irregular_edge = 0.25;      ///< only edges shorter than this collapse onto other triple lines (then: T1)
     double kept_irregular_edge = 0.1;  ///< below this the crossing is kept even when it cannot be separated yet
+    double flip_angle = 1.02;          ///< an edge flips if the angles opposite it add up to more, in units of pi
     double separation = 0.15;          ///< how far each copy of a separated vertex moves
     double separation_cost = 0.0;      ///< area that a separation may add [h^2]: leaves crossings that balance
     double merge_distance = 0.15;      ///< films this close that face each other become one

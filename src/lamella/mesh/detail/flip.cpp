@@ -22,13 +22,12 @@ VertexId opposite(const Face& face, VertexId v, VertexId w) {
 /// cot(alpha + beta) from the two cotangents.
 double cot_of_sum(double a, double b) { return (a * b - 1.0) / (a + b); }
 
-/// The two angles opposite the edge add up to more than 1.02 pi: the edge is far from Delaunay.
-bool wants_flip(const EditMesh& mesh, const Diamond& q) {
+/// The two angles opposite the edge add up to more than pi and the margin: the edge is far from Delaunay.
+bool wants_flip(const EditMesh& mesh, const Diamond& q, double cot_margin) {
     const double a = cot_at(mesh.at(q.c), mesh.at(q.v), mesh.at(q.w));
     const double b = cot_at(mesh.at(q.d), mesh.at(q.v), mesh.at(q.w));
     if (a + b >= 0.0) return false;
-    static const double kMargin = cot_of_degrees(0.02 * 180.0);
-    return cot_of_sum(a, b) < kMargin;
+    return cot_of_sum(a, b) < cot_margin;
 }
 
 bool flip(Workbench& bench, const Diamond& q) {
@@ -63,6 +62,7 @@ bool flip(Workbench& bench, const Diamond& q) {
 
 void flip_edges(Workbench& bench) {
     EditMesh& mesh = bench.mesh;
+    const double cot_margin = cot_of_degrees((bench.options.flip_angle - 1.0) * 180.0);
     for (const FaceId f : mesh.mesh().faces.ids()) {
         for (std::size_t k = 0; k < 3 && mesh.alive(f); ++k) {
             const auto& u = mesh.face(f).vertices;
@@ -74,7 +74,7 @@ void flip_edges(Workbench& bench) {
             if (faces.size() != 2) continue;
             q.g = faces[0] == f ? faces[1] : faces[0];
             q.d = opposite(mesh.face(q.g), q.v, q.w);
-            if (wants_flip(mesh, q) && flip(bench, q)) break;
+            if (wants_flip(mesh, q, cot_margin) && flip(bench, q)) break;
         }
     }
 }

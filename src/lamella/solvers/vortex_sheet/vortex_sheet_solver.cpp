@@ -25,6 +25,8 @@ namespace lamella::vortex_sheet {
 namespace {
 
 constexpr double kFarthest = 0.25;  // edges that a film moves in one step
+// Triangles that a swing stretches and lets go again keep their edges: every flip bends the film.
+constexpr double kFlipAngle = 1.1;
 
 }  // namespace
 
@@ -78,6 +80,7 @@ void VortexSheetSolver::take(FoamMesh mesh) {
     mesh::TrackerOptions options;
     options.edge_length = input_.films->edge_length;
     options.merging = options_.merging;
+    options.flip_angle = kFlipAngle;
     tracker_ = std::make_unique<mesh::Tracker>(std::move(mesh), options);
     topology_ = sheet_topology(tracker_->mesh());
 }
@@ -290,9 +293,22 @@ void VortexSheetSolver::restore_volumes() {
     tracker_->move(mesh::volume_projection(mesh(), kRounds).displacement);
 }
 
+/// Without projection volumes are what the motion makes of them: an edit gives back what it took. Regions that came or
+/// went have no volume to go back to.
+void VortexSheetSolver::restore_volumes(const IdVector<RegionId, double>& before,
+                                        const std::vector<mesh::TopologyEvent>& events) {
+    using Kind = mesh::TopologyEvent::Kind;
+    for (const mesh::TopologyEvent& event : events)
+        if (event.kind == Kind::kSplit || event.kind == Kind::kAbsorb || event.kind == Kind::kPop) return;
+    FoamMesh films = mesh();
+    for (const RegionId r : films.regions.ids()) films.regions[r].target_volume = before[r];
+    tracker_->move(mesh::volume_projection(films).displacement);
+}
+
 template <class Edit>
 void VortexSheetSolver::edit_mesh(Edit&& edit) {
     Transfer transfer(topology_, phi_, velocity_);
+    const IdVector<RegionId, double> volume = mesh::region_volumes(mesh());
     tracker_->set_resampler(transfer.resampler());
     edit();
     tracker_->set_resampler({});
@@ -309,6 +325,7 @@ void VortexSheetSolver::edit_mesh(Edit&& edit) {
         if (topology_.hold[v] == Hold::kRim)
             for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i) phi_[i] = 0.0;
     heal(result.edited);
+    if (!options_.volume_projection) restore_volumes(volume, events);
     for (const mesh::TopologyEvent& event : events)
         events_.push_back({time_, std::string(mesh::name(event.kind)), event.position,
                            fmt::format("regions {} {}", index(event.a), index(event.b))});
@@ -316,10 +333,22 @@ void VortexSheetSolver::edit_mesh(Edit&& edit) {
 
 /// In narrow wedges of air, as between films that have just met, large circulations of two films cancel in all but name:
 /// the flow does not see them. An edit of one film alone would set that energy free, so the jumps around it are evened out.
+/// Such jumps are large beside the velocities; those of a swing are about twice the velocities and left as they are.
 void VortexSheetSolver::heal(const std::vector<VertexId>& edited) {
     if (edited.empty() || options_.healing == 0) return;
+    constexpr double kHidden = 6.0;  // jump over mean speed: more than any swing of low order has
+    const double most = kHidden * mean_speed();
+    const std::vector<Vec3> strength = face_strengths(mesh(), topology_, phi_);
+    const auto hides_flow = [&](VertexId v) {
+        for (const mesh::Corner& corner : topology_.corners.of(v)) {
+            const auto& [a, b, c] = mesh().faces[corner.face].vertices;
+            const double area = 0.5 * norm(cross(mesh().position[b] - mesh().position[a], mesh().position[c] - mesh().position[a]));
+            if (norm(strength[index(corner.face)]) > most * area) return true;
+        }
+        return false;
+    };
     std::vector<std::uint8_t> near(mesh().position.size(), 0);
-    for (const VertexId v : edited) near[index(v)] = 1;
+    for (const VertexId v : edited) near[index(v)] = hides_flow(v) ? 1 : 0;
     const std::vector<std::uint8_t> inside = near;
     for (const mesh::Face& face : mesh().faces)
         for (const VertexId v : face.vertices)
@@ -331,6 +360,13 @@ void VortexSheetSolver::heal(const std::vector<VertexId>& edited) {
             for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i)
                 entries.push_back(static_cast<std::uint32_t>(i));
     even_out(FilmLaplacian(mesh(), topology_), entries, options_.healing, phi_);
+}
+
+/// Root of the mean square velocity of the vertices.
+double VortexSheetSolver::mean_speed() const {
+    double sum = 0.0;
+    for (const Vec3& u : velocity_) sum += squared_norm(u);
+    return std::sqrt(sum / static_cast<double>(velocity_.size()));
 }
 
 /// Without wires nothing outside pushes the air: what remeshing and rounding did to its impulse is taken back.

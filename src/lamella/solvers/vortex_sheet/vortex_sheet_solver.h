@@ -58,11 +58,13 @@ private:
     void obey_wires(const mesh::FoamMesh& mesh, const SheetGeometry& geometry, double from, double to, Flow& flow);
     void move(double dt);
     void restore_volumes();
+    void restore_volumes(const IdVector<mesh::RegionId, double>& before, const std::vector<mesh::TopologyEvent>& events);
     void keep_impulse();
     void apply_events();
     void apply(const film::Event& event);
     void pop(mesh::RegionId region, mesh::RegionId into);
     void inflate();
+    double mean_speed() const;
     void heal(const std::vector<mesh::VertexId>& edited);
     /// Runs an edit of the tracker and lets circulations, velocities and wires follow.
     template <class Edit>
