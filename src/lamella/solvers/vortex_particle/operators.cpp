@@ -22,15 +22,15 @@ std::vector<double> gathered(const Surface& s, Term&& term) {
     return sum;
 }
 
-/// Circulation around closed cells from along(t, k), the line integral over the edge of t opposite to corner k. A cell
-/// that a wall bounds has half of each of its two edges there on its loop.
+/// Of each vertex, from along(t, k), the line integral over the edge of t opposite to corner k: a third of the integral
+/// around the triangles at the vertex, whose area is three times that of its cell. Walls at the vertex close the loop.
 template <class Along>
-std::vector<double> closed_circulation(const Surface& s, Along&& along) {
+std::vector<double> circulation_of_rings(const Surface& s, Along&& along) {
     return gathered(s, [&](std::size_t t, std::size_t k) {
-        double sum = 0.5 * along(t, k);
+        double sum = along(t, k);
         for (const std::size_t wall : {(k + 1) % 3, (k + 2) % 3})
-            if (s.neighbor[t][wall] == kNoNeighbor) sum += 0.5 * along(t, wall);
-        return sum;
+            if (s.neighbor[t][wall] == kNoNeighbor) sum += along(t, wall);
+        return sum / 3.0;
     });
 }
 
@@ -71,14 +71,19 @@ std::vector<double> curl(const Surface& s, std::span<const Vec3> u) {
 }
 
 std::vector<double> closed_curl(const Surface& s, std::span<const Vec3> u) {
-    return closed_circulation(s, [&](std::size_t t, std::size_t k) { return dot(u[t], s.edge(t, k)); });
+    return gathered(s, [&](std::size_t t, std::size_t k) {
+        double sum = dot(u[t], s.edge(t, k));
+        for (const std::size_t wall : {(k + 1) % 3, (k + 2) % 3})
+            if (s.neighbor[t][wall] == kNoNeighbor) sum += dot(u[t], s.edge(t, wall));
+        return 0.5 * sum;
+    });
 }
 
 std::vector<double> surfactant_torque(const Surface& s,
                                       std::span<const double> surfactant,
                                       std::span<const double> thickness,
                                       double strength) {
-    return closed_circulation(s, [&](std::size_t t, std::size_t k) {
+    return circulation_of_rings(s, [&](std::size_t t, std::size_t k) {
         const std::uint32_t a = s.corner[t][(k + 1) % 3], b = s.corner[t][(k + 2) % 3];
         return along_edge(surfactant[a], surfactant[b], thickness[a], thickness[b], strength);
     });

@@ -41,8 +41,9 @@ std::vector<double> closed_curl(const Surface& s, std::span<const Vec3> u);
 ///
 ///     dOmega_i / dt = -(2 R T / rho) sum over the loop of (Gamma_k - Gamma_j) / L(eta_j, eta_k)
 ///
-/// with L the logarithmic mean, so that Gamma = c eta drives nothing; sums to zero without walls. [Tao24, eq. 14;
-/// method sheet 5.3]
+/// with L the logarithmic mean, so that Gamma = c eta drives nothing; sums to zero without walls. Of the loop around all
+/// triangles at i, whose integrand is known along edges, a third is taken: the share of the cell in that area. (The
+/// published eq. 14 has a length too much.) [Tao24, eq. 14; method sheet 5.3]
 /// @param strength  2 R T / rho [m^2/s^2 per mol/m^3]
 std::vector<double> surfactant_torque(const Surface& s,
                                       std::span<const double> surfactant,

@@ -31,13 +31,6 @@ std::vector<double> inverse_thickness(const Surface& s, std::span<const double> 
     return inverse;
 }
 
-/// The nearest number of 32 significant bits: steps that differ by rounding are one step, and share their matrices.
-double rounded(double dt) {
-    int exponent = 0;
-    const double mantissa = std::frexp(dt, &exponent);
-    return std::ldexp(std::nearbyint(std::ldexp(mantissa, 32)), exponent - 32);
-}
-
 }  // namespace
 
 VortexParticleSolver::VortexParticleSolver(const Options& options, const sim::SolverInput& input)
@@ -112,7 +105,9 @@ double VortexParticleSolver::choose_step(double left) const {
     if (!std::isfinite(fastest) || dt < 1e-6 * options_.largest_step)
         throw NumericalError(fmt::format("vortex_particle: at {} s, step {}, the flow runs away: {} m/s, dilatation {} 1/s",
                                          time_, steps_, fastest, fastest_dilatation_));
-    return rounded(left / std::ceil(left / dt - 1e-9));
+    dt = left / std::ceil(left / dt - 1e-9);
+    constexpr double kSame = 1e-9;  // steps that differ by rounding are one step, and share their matrices
+    return std::abs(dt - step_) < kSame * dt ? step_ : dt;
 }
 
 MeshFlow VortexParticleSolver::particles_to_mesh() const {
