@@ -14,7 +14,7 @@ enum class Viscosity {
     kSurface,  ///< that of a curved fluid sheet: a rigid rotation of a bubble is not damped
     kLaplace,  ///< diffusion of the vorticity, as published
 };
-enum class ThicknessProfile { kUniform, kLinear, kStep };
+enum class ThicknessProfile { kUniform, kLinear, kStep, kCosine };
 enum class SurfactantProfile {
     kUniform,
     kProportional,  ///< to the thickness
@@ -34,9 +34,10 @@ struct StartOptions {
         option("thickness", thickness,
                sim::choices<ThicknessProfile>({{"uniform", ThicknessProfile::kUniform},
                                                {"linear", ThicknessProfile::kLinear},
-                                               {"step", ThicknessProfile::kStep}}),
+                                               {"step", ThicknessProfile::kStep},
+                                               {"cosine", ThicknessProfile::kCosine}}),
                {"uniform: material.thickness; linear: from thickness_bottom to thickness_top; step: halfway up from one"
-                " to the other"});
+                " to the other; cosine: half a wave from one to the other"});
         option("thickness_bottom", thickness_bottom, sim::at_least(0.0), {"0: material.thickness", "length"});
         option("thickness_top", thickness_top, sim::at_least(0.0), {"0: material.thickness", "length"});
         option("up", up, sim::any_number(), {"where the top is; [0, 0, 0]: against gravity, or along y without"});

@@ -85,6 +85,7 @@ double thickness_at(const Height& height, const film::Problem& films, const Star
     switch (start.thickness) {
         case ThicknessProfile::kLinear: return bottom + height.of(x) * (top - bottom);
         case ThicknessProfile::kStep: return height.of(x) < 0.5 ? bottom : top;
+        case ThicknessProfile::kCosine: return bottom + 0.5 * (1.0 - std::cos(kPi * height.of(x))) * (top - bottom);
         case ThicknessProfile::kUniform: break;
     }
     return films.material.thickness;
