@@ -60,17 +60,19 @@ TEST(Drainage, EndsInTheExponentialProfileAndStaysThere) {
         std::string soap;
         double k;  ///< [1/m]
     };
-    const double c2 = 2.0 * 8.31446261815324 * 298.15 / (1000.0 * 4e-7);
-    for (const Case& test : {Case{kRectangle, "surfactant = 4e-6", 9.81 / (c2 * 4e-6)},
-                             Case{kRectangle, "surfactant = 8e-7", 9.81 / (c2 * 8e-7)},
+    const double strength = 2.0 * film::kGasConstant * 298.15 / (1000.0 * 4e-7);  // c^2 over Gamma_0
+    for (const Case& test : {Case{kRectangle, "surfactant = 4e-6", 9.81 / (strength * 4e-6)},
+                             Case{kRectangle, "surfactant = 8e-7", 9.81 / (strength * 8e-7)},
                              Case{kDisk, "elasticity = 2e-3", 9.81 / (2.0 * 2e-3 / (1000.0 * 4e-7))}}) {
         auto solver = solver_of(film(test.shape, test.soap));
         solver->start({});
         const double liquid = scalar(*solver, "liquid_volume"), soap = scalar(*solver, "surfactant_amount");
-        for (const double time : {5.0, 10.0, 20.0, 40.0, 60.0}) {
+        for (const double time : {20.0, 40.0, 60.0}) {
             run_until(*solver, time);
             const Rest rest = compare(*solver, test.k, 4e-7);
-            printf("k %g t %g error %g speed %g mesh %g n %g..%g\n", test.k, time, rest.error, rest.speed, scalar(*solver, "mesh_volume_error"), scalar(*solver, "fewest_in_triangle"), scalar(*solver, "most_in_triangle"));
+            EXPECT_LT(rest.error, 0.005) << test.soap << " at " << time;
+            // Sloshing dies out, down to rounding: no slow growth, which value-carrying particles have [method sheet 12.9].
+            EXPECT_LT(rest.speed, time < 30.0 ? 1e-2 : 1e-6) << test.soap << " at " << time;
         }
         EXPECT_NEAR(scalar(*solver, "liquid_volume") / liquid, 1.0, 1e-12);
         EXPECT_NEAR(scalar(*solver, "surfactant_amount") / soap, 1.0, 1e-12);

@@ -1,12 +1,13 @@
 #pragma once
 
-// Solvers from the text of a scene, and points that follow their flow.
+// Solvers from the text of a scene, and points that follow the centers of their vortices.
 
 #include "lamella/core/error.h"
 #include "lamella/scene/scene.h"
 #include "lamella/solvers/vortex_particle/trace.h"
 #include "lamella/solvers/vortex_particle/vortex_particle_solver.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,64 +33,52 @@ inline double scalar(const VortexParticleSolver& solver, const std::string& name
     throw InputError("no scalar " + name);
 }
 
-/// The spot of the surface that is nearest to a point, among the middles of the triangles.
-inline Spot spot_near(const Surface& s, const Vec3& x) {
+/// The spot of a flat film at a point.
+inline Spot spot_at(const Surface& s, const Vec3& x) {
     constexpr std::array<double, 3> kMiddle{1.0 / 3, 1.0 / 3, 1.0 / 3};
-    Spot best{0, kMiddle};
+    Spot spot{0, kMiddle};
     for (std::uint32_t t = 0; t < s.triangles(); ++t)
-        if (norm(s.point(t, kMiddle) - x) < norm(s.point(best.triangle, kMiddle) - x)) best.triangle = t;
-    walk(s, best, x - s.point(best.triangle, kMiddle));
-    return best;
+        if (norm(s.point(t, kMiddle) - x) < norm(s.point(spot.triangle, kMiddle) - x)) spot.triangle = t;
+    walk(s, spot, x - s.point(spot.triangle, kMiddle));
+    return spot;
 }
 
-/// Points that follow the flow of a solver, as centers of vortices do.
-class Tracers {
+/// The value of a field of vertices at a point of a flat film.
+inline double value_at(const Surface& s, const std::vector<double>& field, const Vec3& x) {
+    const Spot spot = spot_at(s, x);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) sum += spot.place[k] * field[s.corner[spot.triangle][k]];
+    return sum;
+}
+
+/// Centers of vortices of a flat film: the mean position of vorticity of their sign within `radius` of where they were.
+class Centers {
 public:
-    Tracers(const VortexParticleSolver& solver, const std::vector<Vec3>& at, double radius) : solver_(solver), radius_(radius) {
-        Particles::for_each_column(points_, [&](const char*, auto& column) { column.resize(at.size()); });
-        for (std::size_t k = 0; k < at.size(); ++k) {
-            const Spot spot = spot_near(solver.surface(), at[k]);
-            points_.triangle[k] = spot.triangle;
-            points_.place[k] = spot.place;
-        }
-        last_ = velocity();
-    }
-    /// One step of the solver, which must not change it by more than its own rules: then the tracers'.
-    void advance(VortexParticleSolver& solver, double limit) {
-        const double before = solver.time();
-        solver.advance(limit);
-        const std::vector<Vec3> now = velocity();
-        std::vector<Vec3> middle(now.size());
-        for (std::size_t v = 0; v < now.size(); ++v) middle[v] = 0.5 * (now[v] + last_[v]);
-        trace(solver.surface(), middle, solver.time() - before, points_);
-        last_ = now;
-        const Surface& s = solver.surface();
-        for (std::size_t k = 0; k < points_.size(); ++k) {
+    Centers(const VortexParticleSolver& solver, std::vector<Vec3> at, std::vector<double> sign, double radius)
+        : solver_(solver), at_(std::move(at)), sign_(std::move(sign)), radius_(radius) {}
+
+    /// To be called after each step; a center must not have moved by as much as the radius.
+    void follow() {
+        const Surface& s = solver_.surface();
+        for (std::size_t k = 0; k < at_.size(); ++k) {
             Vec3 sum;
             double weight = 0.0;
-            const double sign = solver.observed().circulation[s.corner[points_.triangle[k]][0]] > 0 ? 1 : -1;
-            for (std::size_t v = 0; v < s.vertices(); ++v)
-                if (norm(s.position[v] - at(k)) < radius_) {
-                    const double w = std::max(0.0, sign * solver.observed().circulation[v]);
-                    sum += w * s.position[v];
-                    weight += w;
-                }
-            if (weight == 0.0) continue;
-            Spot spot{points_.triangle[k], points_.place[k]};
-            walk(s, spot, sum / weight - at(k));
-            points_.triangle[k] = spot.triangle;
-            points_.place[k] = spot.place;
+            for (std::size_t v = 0; v < s.vertices(); ++v) {
+                if (norm(s.position[v] - at_[k]) >= radius_) continue;
+                const double w = std::max(0.0, sign_[k] * solver_.observed().circulation[v]);
+                sum += w * s.position[v];
+                weight += w;
+            }
+            at_[k] = sum / weight;
         }
     }
-    Vec3 at(std::size_t k) const { return solver_.surface().point(points_.triangle[k], points_.place[k]); }
+    const Vec3& operator[](std::size_t k) const { return at_[k]; }
 
 private:
-    std::vector<Vec3> velocity() const { return vertex_velocity(solver_.surface(), solver_.observed().velocity); }
-
     const VortexParticleSolver& solver_;
+    std::vector<Vec3> at_;
+    std::vector<double> sign_;
     double radius_;
-    Particles points_;
-    std::vector<Vec3> last_;
 };
 
 }  // namespace lamella::vortex_particle

@@ -76,12 +76,11 @@ std::vector<sim::Scalar> VortexParticleSolver::scalars() const {
     const MeshFlow& flow = observed();
     const film::Material& material = input_.films->material;
     const double rest = film::start_surfactant(material), rt = film::thermal_energy(material);
-    double elastic = 0.0, gravity = 0.0, on_mesh = 0.0, enstrophy = 0.0, fastest = 0.0;
+    double elastic = 0.0, on_mesh = 0.0, enstrophy = 0.0, fastest = 0.0;
     Vec3 impulse;
     for (std::size_t v = 0; v < surface_.vertices(); ++v) {
         const double gamma = flow.surfactant[v], area = surface_.vertex_area[v], omega = flow.circulation[v] / area;
         elastic += 2.0 * rt * area * (gamma * std::log(gamma / rest) - gamma + rest);
-        gravity -= material.liquid_density * flow.thickness[v] * area * dot(material.gravity, surface_.position[v]);
         on_mesh += flow.thickness[v] * area;
         enstrophy += 0.5 * omega * omega * area;
         impulse += flow.circulation[v] * surface_.position[v];
@@ -91,6 +90,9 @@ std::vector<sim::Scalar> VortexParticleSolver::scalars() const {
         return parallel_sum(column.size(), [&](std::size_t p) { return column[p]; });
     };
     const double volume = sum(particles_.volume), kinetic = kinetic_energy();
+    const double gravity = -material.liquid_density * parallel_sum(particles_.size(), [&](std::size_t p) {
+        return particles_.volume[p] * dot(material.gravity, surface_.point(particles_.triangle[p], particles_.place[p]));
+    });
     std::size_t fewest = particles_.size(), most = 0;
     for (std::size_t t = 0; t < surface_.triangles(); ++t) {
         fewest = std::min(fewest, bins_[t + 1] - bins_[t]);

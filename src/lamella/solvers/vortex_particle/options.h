@@ -76,8 +76,7 @@ struct Options {
     double air_drag = 0.0;
     double largest_step = 0.01;
     double courant = 1.0;
-    double area_relaxation = 1.0;
-    double area_blend = 2.0;
+    double area_relaxation = 0.0;
     double velocity_blend = 2.0;
     double solve_tolerance = 1e-10;
     bool particles_in_frames = false;
@@ -102,9 +101,7 @@ struct Options {
         option("largest_step", largest_step, sim::more_than(0.0), {"upper limit of the time step", "time"});
         option("courant", courant, sim::more_than(0.0), {"edges that the fastest particle moves in a step, at most"});
         option("area_relaxation", area_relaxation, sim::at_least(0.0),
-               {"rate at which particles' areas follow the room that they have", "1/time"});
-        option("area_blend", area_blend, sim::at_least(0.0),
-               {"rate at which particles' thickness follows that of the mesh, which cannot see their differences", "1/time"});
+               {"rate at which particles' areas follow the room that they have; measured: 0 is best", "1/time"});
         option("velocity_blend", velocity_blend, sim::at_least(0.0),
                {"rate at which particles' velocity follows that of the mesh", "1/time"});
         option("solve_tolerance", solve_tolerance, sim::strictly_between(0.0, 1e-2),

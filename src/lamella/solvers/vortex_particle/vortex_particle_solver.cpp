@@ -231,8 +231,9 @@ void VortexParticleSolver::recover_velocity(MeshFlow& flow) const {
     for (std::size_t t = 0; t < away.size(); ++t) flow.velocity[t] += away[t];
 }
 
-/// Particles take over changes, not values: what the mesh cannot see of them stays [Tao24, eq. 21]. Slowly they follow
-/// what it does see: velocities and thicknesses those of the mesh, areas the room that there is. [method sheet 12.10]
+/// Particles take over changes, not values: what the mesh cannot see of them stays [Tao24, eq. 21]. Velocities follow
+/// slowly what it does see. Areas need not: a thickness that drifted is carried by the liquid, which is conserved (a blend
+/// as in the method sheet's 12.10, tried, makes thickness of thick and thin neighbors alike and liquid out of nothing).
 void VortexParticleSolver::mesh_to_particles(double dt,
                                              const MeshFlow& before,
                                              const MeshFlow& after,
@@ -245,11 +246,9 @@ void VortexParticleSolver::mesh_to_particles(double dt,
     }
     const std::vector<Vec3> smooth = vertex_velocity(surface_, after.velocity);
     const double relaxed = -std::expm1(-options_.area_relaxation * dt);
-    const double blended = -std::expm1(-options_.area_blend * dt);
     const double followed = -std::expm1(-options_.velocity_blend * dt);
     const std::vector<double> spin_at = transfer_.gather(surface_, particles_, spin);
     const std::vector<double> room_at = transfer_.gather(surface_, particles_, room);
-    const std::vector<double> thickness_at = transfer_.gather(surface_, particles_, before.thickness);
     parallel_for(particles_.size(), [&](std::size_t p) {
         const std::size_t t = particles_.triangle[p];
         const auto& [a, b, c] = surface_.corner[t];
@@ -260,10 +259,8 @@ void VortexParticleSolver::mesh_to_particles(double dt,
         Vec3& u = particles_.velocity[p];
         u += followed * (mesh - u);
         u -= dot(u, surface_.normal[t]) * surface_.normal[t];
-        double& area = particles_.area[p];
-        area += blended * (particles_.volume[p] / thickness_at[p] - area);
         const double theta = at[0] * dilatation[a] + at[1] * dilatation[b] + at[2] * dilatation[c];
-        area *= std::exp(theta * dt + relaxed * room_at[p]);
+        particles_.area[p] *= std::exp(theta * dt + relaxed * room_at[p]);
     });
 }
 
