@@ -248,7 +248,8 @@ void VortexParticleSolver::mesh_to_particles(double dt,
     const double relaxed = -std::expm1(-options_.area_relaxation * dt);
     const double followed = -std::expm1(-options_.velocity_blend * dt);
     const std::vector<double> spin_at = transfer_.gather(surface_, particles_, spin);
-    const std::vector<double> room_at = transfer_.gather(surface_, particles_, room);
+    const std::vector<double> room_at =
+        relaxed > 0.0 ? transfer_.gather(surface_, particles_, room) : std::vector<double>(particles_.size(), 0.0);
     parallel_for(particles_.size(), [&](std::size_t p) {
         const std::size_t t = particles_.triangle[p];
         const auto& [a, b, c] = surface_.corner[t];
