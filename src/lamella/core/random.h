@@ -29,6 +29,8 @@ enum class RandomStream : std::uint32_t {
     kMeshJitter = 6,      ///< vertices off the planes of a grid
     kAnneal = 7,          ///< volumes while a cluster looks for a better shape
     kFoamSizes = 8,       ///< volumes of a cluster's bubbles
+    kFilmNoise = 9,       ///< slopes of the smooth noise on films
+    kFilmParticle = 10,   ///< where particles lie in a triangle of film at the start
     kPicture = 20,        ///< where the rays of a picture start (9 to 19 are kept for solvers)
 };
 

@@ -16,7 +16,34 @@ struct Material {
     double thickness = 400e-9;       ///< of the film [m]
     Vec3 gravity{};                  ///< [m/s^2]
 
+    double liquid_density = 1000.0;       ///< of the liquid in the film [kg/m^3]
+    double kinematic_viscosity = 1e-6;    ///< of that liquid [m^2/s]
+    double surface_viscosity = 0.0;       ///< of each of the two interfaces [kg/s]
+    double temperature = 298.15;          ///< [K]
+    double surfactant = 0.0;              ///< Gamma_0, per area of ONE interface [mol/m^2]; this, or
+    double elasticity = 0.0;              ///< E = R T Gamma_0 [N/m], or
+    double elastic_wave_speed = 0.0;      ///< c = sqrt(2 E / (liquid_density thickness)) [m/s]: film/surfactant.h
+
     double film_tension() const { return 2.0 * surface_tension; }  ///< [N/m]
+};
+
+/// What swirls in a film at the start: [[vortex]] of a scene. Its vorticity omega [1/s] is positive counterclockwise
+/// seen from the tip of the film's normal; r is the distance from `center`.
+struct Vortex {
+    enum class Profile {
+        kGauss,          ///< omega = circulation / (pi a^2) exp(-(r / a)^2)
+        kTaylor,         ///< omega = (speed / a) (2 - (r / a)^2) exp((1 - (r / a)^2) / 2): no net circulation, fastest at a
+        kRotation,       ///< a rigid rotation: omega = 2 rate (axis . n)
+        kRossbyHaurwitz, ///< on a sphere around center: omega = -20 circulation z (x^3 - 3 x y^2) / R^6, z along axis
+        kHole,           ///< circulation around the hole of the film that is nearest to center
+    };
+    Profile profile = Profile::kGauss;
+    Vec3 center;               ///< [m]
+    Vec3 axis{{0.0, 0.0, 1.0}};
+    double radius = 0.0;       ///< a [m]
+    double circulation = 0.0;  ///< [m^2/s]
+    double speed = 0.0;        ///< [m/s]
+    double rate = 0.0;         ///< [rad/s]
 };
 
 /// How tense the films between two regions are, relative to the material's film: [[tension]] of a scene.
@@ -42,7 +69,7 @@ struct Event {
 };
 
 /// What every film solver starts from, whatever its method: scene tables [material], [[bubble]], [[film]], [[wire]],
-/// [foam], [resolution], [[event]].
+/// [foam], [resolution], [[event]], [[vortex]].
 struct Problem {
     Material material;
     mesh::FoamMesh mesh;        ///< the films at the start
@@ -52,6 +79,7 @@ struct Problem {
     IdVector<mesh::VertexId, std::int32_t> wire_of;        ///< which of them holds a vertex; -1: none, or it is at rest
     IdVector<mesh::RegionId, Vec3> velocity;               ///< of each bubble at the start [m/s]
     std::vector<Event> events;  ///< in order of time
+    std::vector<Vortex> vortices;
 };
 
 }  // namespace lamella::film

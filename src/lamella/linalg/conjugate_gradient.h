@@ -14,27 +14,22 @@ struct IterativeSolution {
 
 /// Conjugate gradients for a symmetric positive semi-definite operator, from the given x.
 ///
-/// @param apply      apply(x, y): y = A x for vectors of b's length
-/// @param scale      inverse of a diagonal preconditioner, or empty
-/// @param tolerance  of the residual, relative to |b|
-/// @param x          the start, and the answer
-template <class Operator>
-IterativeSolution conjugate_gradient(Operator&& apply,
-                                     const std::vector<double>& scale,
-                                     const std::vector<double>& b,
-                                     std::vector<double>& x,
-                                     double tolerance,
-                                     int most_iterations) {
+/// @param apply         apply(x, y): y = A x for vectors of b's length
+/// @param precondition  precondition(u, v): v about A^-1 u, of a symmetric positive definite operator
+/// @param tolerance     of the residual, relative to |b|
+/// @param x             the start, and the answer
+template <class Operator, class Preconditioner>
+IterativeSolution preconditioned_conjugate_gradient(Operator&& apply,
+                                                    Preconditioner&& precondition,
+                                                    const std::vector<double>& b,
+                                                    std::vector<double>& x,
+                                                    double tolerance,
+                                                    int most_iterations) {
     const std::size_t n = b.size();
     const auto dot = [n](const std::vector<double>& u, const std::vector<double>& v) {
         double sum = 0.0;
         for (std::size_t i = 0; i < n; ++i) sum += u[i] * v[i];
         return sum;
-    };
-    const auto precondition = [&](const std::vector<double>& u, std::vector<double>& v) {
-        v = u;
-        if (!scale.empty())
-            for (std::size_t i = 0; i < n; ++i) v[i] *= scale[i];
     };
     std::vector<double> residual(n), direction, image(n), scaled;
     apply(x, image);
@@ -67,6 +62,21 @@ IterativeSolution conjugate_gradient(Operator&& apply,
         done.residual = std::sqrt(dot(residual, residual)) / size;
     }
     return done;
+}
+
+/// The same with the inverse of a diagonal preconditioner in `scale`, or with none where that is empty.
+template <class Operator>
+IterativeSolution conjugate_gradient(Operator&& apply,
+                                     const std::vector<double>& scale,
+                                     const std::vector<double>& b,
+                                     std::vector<double>& x,
+                                     double tolerance,
+                                     int most_iterations) {
+    const auto precondition = [&scale](const std::vector<double>& u, std::vector<double>& v) {
+        v = u;
+        for (std::size_t i = 0; i < scale.size(); ++i) v[i] *= scale[i];
+    };
+    return preconditioned_conjugate_gradient(apply, precondition, b, x, tolerance, most_iterations);
 }
 
 }  // namespace lamella::linalg

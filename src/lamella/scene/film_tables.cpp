@@ -274,6 +274,16 @@ void attach(film::Problem& problem, const WireTable& wire, const SourceLocation&
         throw InputError(where, fmt::format("no film is within {:.3g} m of the wire; move it, or raise wire.reach", reach));
 }
 
+film::Vortex vortex_of(const VortexTable& vortex, const SourceLocation& where) {
+    using Profile = film::Vortex::Profile;
+    const bool core = vortex.profile == Profile::kGauss || vortex.profile == Profile::kTaylor;
+    if (core && !(vortex.radius > 0.0)) throw InputError(where, "vortex.radius is missing: of its core, e.g. \"3 cm\"");
+    if (!core && norm(vortex.axis) == 0.0) throw InputError(where, "vortex.axis = [0, 0, 0] is no direction");
+    film::Vortex ready = vortex;
+    if (!core) ready.axis = vortex.axis / norm(vortex.axis);
+    return ready;
+}
+
 /// The velocity that the scene gives to each of its bubbles; films and foams have none.
 IdVector<mesh::RegionId, Vec3> start_velocities(const FilmTables& tables, const FoamMesh& mesh) {
     IdVector<mesh::RegionId, Vec3> velocity(mesh.regions.size());
@@ -313,7 +323,8 @@ std::vector<FilmTableInfo> film_table_infos() {
             info_of<FoamTable>("foam", "a cluster of bubbles in random places", false),
             info_of<TensionTable>("tension", "films that are tenser than others: [[tension]]", true),
             info_of<WireTable>("wire", "a wire that holds films, at rest or moving: [[wire]]", true),
-            info_of<EventTable>("event", "what happens to bubbles on the way: [[event]]", true)};
+            info_of<EventTable>("event", "what happens to bubbles on the way: [[event]]", true),
+            info_of<VortexTable>("vortex", "what swirls in the film at the start: [[vortex]]", true)};
 }
 
 FilmTables read_film_tables(const sim::Node& root) {
@@ -324,7 +335,8 @@ FilmTables read_film_tables(const sim::Node& root) {
                       .foams = {},
                       .tensions = read_list<TensionTable>(root, "tension"),
                       .wires = read_list<WireTable>(root, "wire"),
-                      .events = read_list<EventTable>(root, "event")};
+                      .events = read_list<EventTable>(root, "event"),
+                      .vortices = read_list<VortexTable>(root, "vortex")};
     if (root.find("foam") != nullptr) tables.foams.push_back(read_one<FoamTable>(root, "foam"));
     return tables;
 }
@@ -376,6 +388,8 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
         problem.tensions.push_back({static_cast<mesh::RegionId>(t.a), static_cast<mesh::RegionId>(t.b), t.factor});
     }
     problem.events = events_of(tables, problem.mesh, root);
+    for (std::size_t k = 0; k < tables.vortices.size(); ++k)
+        problem.vortices.push_back(vortex_of(tables.vortices[k], place(root, "vortex", k)));
     return problem;
 }
 
@@ -390,6 +404,7 @@ std::string film_tables_toml(const FilmTables& tables, double edge_length) {
     for (const TensionTable& tension : tables.tensions) text += toml_of("tension", tension, true);
     for (const WireTable& wire : tables.wires) text += toml_of("wire", wire, true);
     for (const EventTable& event : tables.events) text += toml_of("event", event, true);
+    for (const VortexTable& vortex : tables.vortices) text += toml_of("vortex", vortex, true);
     return text;
 }
 

@@ -21,6 +21,17 @@ struct MaterialTable : film::Material {
         option("air_density", air_density, sim::at_least(0.0), {"of the gas on both sides", "mass/length^3"});
         option("thickness", thickness, sim::more_than(0.0), {"of the film", "length"});
         option("gravity", gravity, sim::any_number(), {"acceleration", "length/time^2"});
+        option("liquid_density", liquid_density, sim::more_than(0.0), {"of the liquid in the film", "mass/length^3"});
+        option("kinematic_viscosity", kinematic_viscosity, sim::at_least(0.0), {"of that liquid", "length^2/time"});
+        option("surface_viscosity", surface_viscosity, sim::at_least(0.0), {"of each interface", "mass/time"});
+        option("temperature", temperature, sim::more_than(0.0), {"of the film", "K"});
+        option("surfactant", surfactant, sim::at_least(0.0),
+               {"per area of one interface, at the start; this, elasticity or elastic_wave_speed; none: 4e-6 mol/m^2",
+                "mol/length^2"});
+        option("elasticity", elasticity, sim::at_least(0.0),
+               {"of one interface, gas constant * temperature * surfactant", "mass/time^2"});
+        option("elastic_wave_speed", elastic_wave_speed, sim::at_least(0.0),
+               {"of waves of thickness: sqrt(2 elasticity / (liquid_density thickness))", "length/time"});
     }
 };
 
@@ -224,6 +235,29 @@ struct EventTable {
     }
 };
 
+/// One [[vortex]]
+struct VortexTable : film::Vortex {
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("profile", profile,
+               sim::choices<film::Vortex::Profile>({{"gauss", film::Vortex::Profile::kGauss},
+                                                    {"taylor", film::Vortex::Profile::kTaylor},
+                                                    {"rotation", film::Vortex::Profile::kRotation},
+                                                    {"rossby_haurwitz", film::Vortex::Profile::kRossbyHaurwitz},
+                                                    {"hole", film::Vortex::Profile::kHole}}),
+               {"gauss: of circulation and radius; taylor: of speed at radius, no net circulation; rotation: rigid, of"
+                " rate about axis; rossby_haurwitz: the wave l = 4, m = 3 of a sphere; hole: circulation around the"
+                " nearest hole of the film"});
+        option("center", center, sim::any_number(), {"where it is", "length"});
+        option("axis", axis, sim::any_number(), {"of a rotation or rossby_haurwitz"});
+        option("radius", radius, sim::at_least(0.0), {"of the core", "length"});
+        option("circulation", circulation, sim::any_number(),
+               {"counterclockwise seen from the tip of the film's normal", "length^2/time"});
+        option("speed", speed, sim::any_number(), {"taylor: the fastest, at radius", "length/time"});
+        option("rate", rate, sim::any_number(), {"rotation: angular velocity", "1/time"});
+    }
+};
+
 /// All of them, as read.
 struct FilmTables {
     MaterialTable material;
@@ -234,6 +268,7 @@ struct FilmTables {
     std::vector<TensionTable> tensions;
     std::vector<WireTable> wires;
     std::vector<EventTable> events;
+    std::vector<VortexTable> vortices;
 };
 
 /// Their names, and how each is described: "[[bubble]]" may be there several times, "[foam]" once.

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "lamella/film/problem.h"
+
+namespace lamella::film {
+
+// Soap on the two interfaces of a film, spread as a dilute gas: the tension of ONE interface falls with what lies on
+// it, sigma = sigma_0 - R T Gamma. A film that is stretched has less soap per area and pulls harder: it is elastic, and
+// waves of its thickness run along it with the speed c = sqrt(2 R T Gamma_0 / (rho eta_0)).
+
+inline constexpr double kGasConstant = 8.31446261815324;  ///< R [J/(mol K)]
+
+/// R T [J/mol].
+inline double thermal_energy(const Material& material) { return kGasConstant * material.temperature; }
+
+/// Gamma_0 from the one of material.surfactant, .elasticity and .elastic_wave_speed that is given [mol/m^2]; a common
+/// 4e-6 where none is.
+/// @throws InputError  more than one is given
+double start_surfactant(const Material& material);
+
+/// E = R T Gamma_0, the Gibbs elasticity of one interface [N/m].
+double elasticity(const Material& material);
+
+/// c = sqrt(2 E / (rho eta_0)) [m/s].
+double elastic_wave_speed(const Material& material);
+
+/// The liquid's viscosity and that of the two interfaces that it is between, nu + 2 mu_s / (rho eta_0) [m^2/s]
+/// [Trapeznikov57].
+double film_viscosity(const Material& material);
+
+}  // namespace lamella::film

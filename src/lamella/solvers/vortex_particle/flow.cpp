@@ -1,0 +1,115 @@
+#include "lamella/solvers/vortex_particle/flow.h"
+
+#include "lamella/core/error.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace lamella::vortex_particle {
+namespace {
+
+/// Numbers the unknowns: one per vertex, but none where `fixed`.
+template <class Fixed>
+std::vector<int> numbered(const Surface& s, Fixed&& fixed) {
+    std::vector<int> unknown(s.vertices(), -1);
+    int next = 0;
+    for (std::size_t v = 0; v < s.vertices(); ++v)
+        if (!fixed(v)) unknown[v] = next++;
+    return unknown;
+}
+
+/// The first vertex of each component.
+std::vector<std::size_t> first_vertices(const Surface& s) {
+    std::vector<std::size_t> first(s.components, s.vertices());
+    for (std::size_t v = s.vertices(); v-- > 0;) first[s.component[v]] = v;
+    return first;
+}
+
+std::vector<int> potential_unknowns(const Surface& s) {
+    const std::vector<std::size_t> pinned = first_vertices(s);
+    return numbered(s, [&](std::size_t v) { return v == pinned[s.component[v]]; });
+}
+
+/// None on outer walls, one for all vertices of the wall around a hole.
+std::vector<int> stream_unknowns(const Surface& s) {
+    std::vector<std::size_t> pinned = first_vertices(s), speaker(s.loops.size(), s.vertices());
+    for (const BoundaryLoop& loop : s.loops) pinned[loop.component] = s.vertices();
+    for (std::size_t v = s.vertices(); v-- > 0;)
+        if (s.loop[v] >= 0) speaker[static_cast<std::size_t>(s.loop[v])] = v;
+    const auto hole = [&](std::size_t v) {
+        return s.loop[v] >= 0 && !s.loops[static_cast<std::size_t>(s.loop[v])].outer;
+    };
+    std::vector<int> unknown = numbered(s, [&](std::size_t v) {
+        if (s.loop[v] < 0) return v == pinned[s.component[v]];
+        return !hole(v) || v != speaker[static_cast<std::size_t>(s.loop[v])];
+    });
+    for (std::size_t v = 0; v < s.vertices(); ++v)
+        if (hole(v)) unknown[v] = unknown[speaker[static_cast<std::size_t>(s.loop[v])]];
+    return unknown;
+}
+
+}  // namespace
+
+FlowSolver::Poisson::Poisson(const Surface& s, std::vector<int> unknown) : matrix(s, std::move(unknown)) {
+    if (matrix.size() == 0) return;
+    matrix.assemble(s, 1.0, {}, {});
+    factors.analyze(matrix.matrix());
+    if (!factors.factorize(matrix.matrix())) throw NumericalError("the film's Poisson equation is singular");
+}
+
+/// Adds up what belongs to one unknown, solves, and gives each vertex its unknown's value.
+std::vector<double> FlowSolver::Poisson::solve(const Surface& s, std::vector<double> right) const {
+    std::vector<double> x(matrix.size(), 0.0);
+    for (std::size_t v = 0; v < s.vertices(); ++v)
+        if (matrix.unknown(v) >= 0) x[static_cast<std::size_t>(matrix.unknown(v))] += right[v];
+    if (!x.empty()) factors.solve(x);
+    for (std::size_t v = 0; v < s.vertices(); ++v)
+        right[v] = matrix.unknown(v) >= 0 ? x[static_cast<std::size_t>(matrix.unknown(v))] : 0.0;
+    return right;
+}
+
+FlowSolver::FlowSolver(const Surface& s) : stream_(s, stream_unknowns(s)), potential_(s, potential_unknowns(s)) {}
+
+std::vector<double> FlowSolver::stream_function(const Surface& s,
+                                                std::span<const double> circulation,
+                                                std::span<const double> hole_circulation) const {
+    std::vector<double> right(circulation.begin(), circulation.end());
+    for (double& value : right) value = -value;
+    // The integral of grad phi . grad Psi over the cells at a wall is that of -omega and of the flow along the wall.
+    std::vector<std::uint8_t> met(s.loops.size(), 0);
+    for (std::size_t v = 0; v < s.vertices(); ++v) {
+        if (s.loop[v] < 0 || met[static_cast<std::size_t>(s.loop[v])] != 0) continue;
+        met[static_cast<std::size_t>(s.loop[v])] = 1;
+        right[v] -= hole_circulation[static_cast<std::size_t>(s.loop[v])];
+    }
+    return stream_.solve(s, std::move(right));
+}
+
+std::vector<double> FlowSolver::potential(const Surface& s, std::span<const double> outflow) const {
+    std::vector<double> right(outflow.begin(), outflow.end());
+    for (double& value : right) value = -value;
+    return potential_.solve(s, std::move(right));
+}
+
+namespace {
+
+std::vector<int> all_vertices(const Surface& s) {
+    std::vector<int> unknown(s.vertices());
+    std::iota(unknown.begin(), unknown.end(), 0);
+    return unknown;
+}
+
+}  // namespace
+
+ShiftedStiffness::ShiftedStiffness(const Surface& s) : matrix_(s, all_vertices(s)) {
+    factors_.analyze(matrix_.matrix());
+}
+
+void ShiftedStiffness::factorize(const Surface& s, double scale, std::span<const double> weight,
+                                 std::span<const double> mass) {
+    matrix_.assemble(s, scale, weight, mass);
+    if (!factors_.factorize(matrix_.matrix()))
+        throw NumericalError("vortex_particle: a diffusion matrix of the film is singular");
+}
+
+}  // namespace lamella::vortex_particle

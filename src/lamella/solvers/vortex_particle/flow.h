@@ -1,0 +1,58 @@
+#pragma once
+
+// From vorticity and dilatation to velocity: u = grad Phi + J grad Psi.
+
+#include "lamella/linalg/ldlt.h"
+#include "lamella/solvers/vortex_particle/operators.h"
+#include "lamella/solvers/vortex_particle/surface.h"
+
+#include <span>
+#include <vector>
+
+namespace lamella::vortex_particle {
+
+/// The two Poisson equations of a film, factored once [method sheet 5.6, 10]:
+///
+///     K Psi = -Omega   Psi is constant along each wall: 0 on the outer one, and on the wall around a hole such that the
+///                      circulation around it is what is given (this is the harmonic part of the flow)
+///     K Phi = -D       walls let nothing through
+///
+/// Where Psi or Phi is free up to a constant, one value of each component is 0.
+class FlowSolver {
+public:
+    explicit FlowSolver(const Surface& s);
+
+    /// @param circulation       Omega_i [m^2/s]; sums to zero on a component without walls
+    /// @param hole_circulation  one per loop of the surface, counterclockwise around the hole seen from the tip of the
+    ///                          normal; outer loops are not read
+    std::vector<double> stream_function(const Surface& s, std::span<const double> circulation,
+                                        std::span<const double> hole_circulation) const;
+    /// @param outflow  D_i [m^2/s]; sums to zero on each component
+    std::vector<double> potential(const Surface& s, std::span<const double> outflow) const;
+
+private:
+    struct Poisson {
+        VertexMatrix matrix;
+        linalg::Ldlt factors;
+
+        Poisson(const Surface& s, std::vector<int> unknown);
+        std::vector<double> solve(const Surface& s, std::vector<double> right) const;
+    };
+    Poisson stream_, potential_;
+};
+
+/// (diag(mass) + scale K_w) x = b with a factorization that is kept while mass, scale and weights stay the same.
+class ShiftedStiffness {
+public:
+    explicit ShiftedStiffness(const Surface& s);
+
+    /// @throws NumericalError  the matrix is not definite
+    void factorize(const Surface& s, double scale, std::span<const double> weight, std::span<const double> mass);
+    void solve(std::span<double> x) const { factors_.solve(x); }
+
+private:
+    VertexMatrix matrix_;
+    linalg::Ldlt factors_;
+};
+
+}  // namespace lamella::vortex_particle

@@ -1,0 +1,115 @@
+#pragma once
+
+#include "lamella/core/vec.h"
+#include "lamella/sim/options.h"
+#include "lamella/solvers/vortex_particle/transfer.h"
+
+namespace lamella::vortex_particle {
+
+enum class Tracer {
+    kExtrapolated,  ///< with the velocity of the middle of the step, from the last two: second order [method sheet 12.11]
+    kFrozen,        ///< with that of its beginning, as published: first order, gains energy
+};
+enum class Viscosity {
+    kSurface,  ///< that of a curved fluid sheet: a rigid rotation of a bubble is not damped
+    kLaplace,  ///< diffusion of the vorticity, as published
+};
+enum class ThicknessProfile { kUniform, kLinear, kStep, kCosine };
+enum class SurfactantProfile {
+    kUniform,
+    kProportional,  ///< to the thickness
+    kBalanced,      ///< such that it carries the film's weight
+};
+
+/// How thickness and surfactant lie at the start.
+struct StartOptions {
+    ThicknessProfile thickness = ThicknessProfile::kUniform;
+    double thickness_bottom = 0.0;
+    double thickness_top = 0.0;
+    Vec3 up;
+    SurfactantProfile surfactant = SurfactantProfile::kUniform;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("thickness", thickness,
+               sim::choices<ThicknessProfile>({{"uniform", ThicknessProfile::kUniform},
+                                               {"linear", ThicknessProfile::kLinear},
+                                               {"step", ThicknessProfile::kStep},
+                                               {"cosine", ThicknessProfile::kCosine}}),
+               {"uniform: material.thickness; linear: from thickness_bottom to thickness_top; step: halfway up from one"
+                " to the other; cosine: half a wave from one to the other"});
+        option("thickness_bottom", thickness_bottom, sim::at_least(0.0), {"0: material.thickness", "length"});
+        option("thickness_top", thickness_top, sim::at_least(0.0), {"0: material.thickness", "length"});
+        option("up", up, sim::any_number(), {"where the top is; [0, 0, 0]: against gravity, or along y without"});
+        option("surfactant", surfactant,
+               sim::choices<SurfactantProfile>({{"uniform", SurfactantProfile::kUniform},
+                                                {"proportional", SurfactantProfile::kProportional},
+                                                {"balanced", SurfactantProfile::kBalanced}}),
+               {"proportional: to the thickness; balanced: such that its gradient carries the film's weight"});
+    }
+};
+
+/// Smooth noise on the start.
+struct NoiseOptions {
+    double thickness = 0.0;
+    double surfactant = 0.0;
+    double frequency = 0.0;
+    int octaves = 1;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("thickness", thickness, sim::between(0.0, 0.9), {"amplitude, relative"});
+        option("surfactant", surfactant, sim::between(0.0, 0.9), {"amplitude, relative"});
+        option("frequency", frequency, sim::at_least(0.0), {"0: eight over the square root of the film's area", "1/length"});
+        option("octaves", octaves, sim::between(1, 10), {"each of twice the frequency and half the amplitude"});
+    }
+};
+
+/// [vortex_particle] of a scene.
+struct Options {
+    int particles_per_triangle = 10;
+    Reach transfer = Reach::kHat;
+    double kernel_radius = 1.5;
+    Tracer tracer = Tracer::kExtrapolated;
+    bool incompressible = false;
+    Viscosity viscosity = Viscosity::kSurface;
+    double air_drag = 0.0;
+    double largest_step = 0.01;
+    double courant = 1.0;
+    double area_relaxation = 0.0;
+    double velocity_blend = 2.0;
+    double solve_tolerance = 1e-10;
+    bool particles_in_frames = false;
+    StartOptions start;
+    NoiseOptions noise;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("particles_per_triangle", particles_per_triangle, sim::between(1, 1000), {"at the start", "-", "[Tao24]"});
+        option("transfer", transfer, sim::choices<Reach>({{"hat", Reach::kHat}, {"kernel", Reach::kKernel}}),
+               {"between particles and vertices; hat: to the corners of the triangle; kernel: to all vertices within"
+                " kernel_radius, as published, which blurs more and costs more"});
+        option("kernel_radius", kernel_radius, sim::between(1.0, 10.0), {"in longest edges; the paper's is 3"});
+        option("tracer", tracer,
+               sim::choices<Tracer>({{"extrapolated", Tracer::kExtrapolated}, {"frozen", Tracer::kFrozen}}),
+               {"velocity that particles move with; extrapolated: second order in time; frozen: first order, as published"});
+        option("incompressible", incompressible, {"true: the film keeps its thickness along the flow, whatever its surfactant"});
+        option("viscosity", viscosity,
+               sim::choices<Viscosity>({{"surface", Viscosity::kSurface}, {"laplace", Viscosity::kLaplace}}),
+               {"surface: of a curved sheet, which leaves rigid rotations alone; laplace: as published"});
+        option("air_drag", air_drag, sim::at_least(0.0), {"rate at which air at rest stops the flow", "1/time"});
+        option("largest_step", largest_step, sim::more_than(0.0), {"upper limit of the time step", "time"});
+        option("courant", courant, sim::more_than(0.0), {"edges that the fastest particle moves in a step, at most"});
+        option("area_relaxation", area_relaxation, sim::at_least(0.0),
+               {"rate at which particles' areas follow the room that they have; measured: 0 is best", "1/time"});
+        option("velocity_blend", velocity_blend, sim::at_least(0.0),
+               {"rate at which particles' velocity follows that of the mesh", "1/time"});
+        option("solve_tolerance", solve_tolerance, sim::strictly_between(0.0, 1e-2),
+               {"residual of the surfactant's equation, relative"});
+        option("particles_in_frames", particles_in_frames, {"true: frames show the particles too"});
+        option.group("start", start, "thickness and surfactant at the start");
+        option.group("noise", noise, "smooth noise on them");
+    }
+};
+
+}  // namespace lamella::vortex_particle

@@ -1,0 +1,173 @@
+#include "lamella/solvers/vortex_particle/surface.h"
+
+#include "lamella/core/error.h"
+#include "lamella/mesh/edge_faces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace lamella::vortex_particle {
+namespace {
+
+/// Numbers the classes into which `join` has put vertices, in the order of their first members.
+class Classes {
+public:
+    explicit Classes(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0U); }
+    std::uint32_t root(std::uint32_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    void join(std::uint32_t a, std::uint32_t b) {
+        a = root(a), b = root(b);
+        parent_[std::max(a, b)] = std::min(a, b);  // so a root is the first member of its class
+    }
+
+private:
+    std::vector<std::uint32_t> parent_;
+};
+
+void find_neighbors(const mesh::FoamMesh& mesh, Surface& s) {
+    s.neighbor.assign(s.triangles(), {kNoNeighbor, kNoNeighbor, kNoNeighbor});
+    const mesh::EdgeFaces edges = mesh::edge_faces(mesh);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const auto uses = edges.of(e);
+        if (uses.size() < 2) continue;
+        if (uses.size() > 2)
+            throw InputError("vortex_particle: films that meet in a triple line are not built yet; use films without "
+                             "junctions");
+        if (uses[0].forward == uses[1].forward)
+            throw InputError("vortex_particle: neighboring triangles of the film face opposite ways; turn its faces to "
+                             "one side");
+        for (const std::size_t k : {0U, 1U})
+            s.neighbor[index(uses[k].face)][uses[k].opposite] = static_cast<std::int32_t>(index(uses[1 - k].face));
+    }
+}
+
+void find_rings(Surface& s) {
+    s.ring_start.assign(s.vertices() + 1, 0);
+    for (const auto& corners : s.corner)
+        for (const std::uint32_t v : corners) ++s.ring_start[v + 1];
+    std::partial_sum(s.ring_start.begin(), s.ring_start.end(), s.ring_start.begin());
+    s.ring.resize(s.ring_start.back());
+    std::vector<std::size_t> next(s.ring_start.begin(), s.ring_start.end() - 1);
+    for (std::uint32_t t = 0; t < s.triangles(); ++t)
+        for (std::uint32_t k = 0; k < 3; ++k) s.ring[next[s.corner[t][k]]++] = {t, k};
+}
+
+void find_components_and_loops(Surface& s) {
+    Classes parts(s.vertices()), walls(s.vertices());
+    std::vector<double> wall_length(s.vertices(), 0.0);
+    std::vector<std::uint8_t> on_wall(s.vertices(), 0);
+    for (std::size_t t = 0; t < s.triangles(); ++t)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = s.corner[t][(k + 1) % 3], b = s.corner[t][(k + 2) % 3];
+            parts.join(a, b);
+            if (s.neighbor[t][k] != kNoNeighbor) continue;
+            walls.join(a, b);
+            on_wall[a] = on_wall[b] = 1;
+            wall_length[a] += norm(s.edge(t, k));
+        }
+    s.component.resize(s.vertices());
+    s.loop.assign(s.vertices(), -1);
+    std::vector<std::size_t> members;
+    for (std::uint32_t v = 0; v < s.vertices(); ++v) {
+        const std::uint32_t part = parts.root(v);
+        s.component[v] = part == v ? s.components++ : s.component[part];
+        if (on_wall[v] == 0) continue;
+        const std::uint32_t wall = walls.root(v);
+        if (wall == v) {
+            s.loop[v] = static_cast<std::int32_t>(s.loops.size());
+            s.loops.push_back({.component = s.component[v], .center = {}});
+            members.push_back(0);
+        } else {
+            s.loop[v] = s.loop[wall];
+        }
+        const auto l = static_cast<std::size_t>(s.loop[v]);
+        s.loops[l].length += wall_length[v];
+        s.loops[l].center += s.position[v];
+        ++members[l];
+    }
+    std::vector<std::size_t> longest(s.components, s.loops.size());
+    for (std::size_t l = 0; l < s.loops.size(); ++l) {
+        s.loops[l].center *= 1.0 / static_cast<double>(members[l]);
+        std::size_t& best = longest[s.loops[l].component];
+        if (best == s.loops.size() || s.loops[l].length > s.loops[best].length) best = l;
+    }
+    for (const std::size_t l : longest)
+        if (l < s.loops.size()) s.loops[l].outer = true;
+}
+
+void measure(Surface& s) {
+    s.normal.resize(s.triangles());
+    s.area.resize(s.triangles());
+    s.hat_slope.resize(s.triangles());
+    s.vertex_area.assign(s.vertices(), 0.0);
+    s.vertex_normal.assign(s.vertices(), {});
+    for (std::size_t t = 0; t < s.triangles(); ++t) {
+        const Vec3 twice = cross(s.edge(t, 2), s.edge(t, 0));
+        const double length = norm(twice);
+        if (!(length > 0.0)) throw InputError(fmt::format("vortex_particle: triangle {} of the film has no area", t));
+        s.area[t] = 0.5 * length;
+        s.normal[t] = twice / length;
+        s.total_area += s.area[t];
+        for (std::size_t k = 0; k < 3; ++k) {
+            s.hat_slope[t][k] = cross(s.normal[t], s.edge(t, k)) / length;
+            s.longest_edge = std::max(s.longest_edge, norm(s.edge(t, k)));
+            s.vertex_area[s.corner[t][k]] += s.area[t] / 3.0;
+            s.vertex_normal[s.corner[t][k]] += twice;
+        }
+    }
+    for (Vec3& n : s.vertex_normal) n *= 1.0 / norm(n);
+    s.mean_edge = std::sqrt(4.0 / std::sqrt(3.0) * s.total_area / static_cast<double>(s.triangles()));
+}
+
+void find_walls(Surface& s) {
+    constexpr double kStraight = 0.9;  // cosine: walls that turn by more than 26 degrees make a corner
+    s.place.assign(s.vertices(), Place::kInside);
+    s.wall_normal.assign(s.vertices(), {});
+    for (std::size_t t = 0; t < s.triangles(); ++t)
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (s.neighbor[t][k] != kNoNeighbor) continue;
+            const Vec3 out = -s.hat_slope[t][k] / norm(s.hat_slope[t][k]);
+            for (const std::uint32_t v : {s.corner[t][(k + 1) % 3], s.corner[t][(k + 2) % 3]}) {
+                const bool first = s.place[v] == Place::kInside;
+                s.place[v] = first || dot(s.wall_normal[v], out) > kStraight ? Place::kWall : Place::kCorner;
+                s.wall_normal[v] += out;
+            }
+        }
+    for (std::size_t v = 0; v < s.vertices(); ++v) {
+        if (s.place[v] == Place::kWall) s.wall_normal[v] *= 1.0 / norm(s.wall_normal[v]);
+        else s.wall_normal[v] = {};
+    }
+}
+
+}  // namespace
+
+Surface surface_of(const mesh::FoamMesh& mesh) {
+    if (mesh.periodic()) throw InputError("vortex_particle: films in a periodic box are for solver equilibrium");
+    Surface s;
+    s.position = mesh.position.values();
+    for (const mesh::Face& face : mesh.faces) {
+        std::array<std::uint32_t, 3> corners{};
+        for (std::size_t k = 0; k < 3; ++k) corners[k] = static_cast<std::uint32_t>(index(face.vertices[k]));
+        s.corner.push_back(corners);
+    }
+    find_neighbors(mesh, s);
+    find_rings(s);
+    find_components_and_loops(s);
+    measure(s);
+    find_walls(s);
+    return s;
+}
+
+Vec3 turned(const Vec3& u, const Vec3& from, const Vec3& to) {
+    // Rodrigues' formula about from x to; for a tangent vector u of the first plane, from . u = 0.
+    const double cosine = dot(from, to);
+    if (cosine >= 1.0 - 1e-15) return u;
+    return u - (dot(u, to) / (1.0 + cosine)) * (from + to);
+}
+
+}  // namespace lamella::vortex_particle

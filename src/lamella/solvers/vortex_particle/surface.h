@@ -1,0 +1,88 @@
+#pragma once
+
+// The film as the flow sees it: oriented triangles, what lies beside each, and the slopes of the hat functions.
+
+#include "lamella/core/vec.h"
+#include "lamella/mesh/foam_mesh.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lamella::vortex_particle {
+
+inline constexpr std::int32_t kNoNeighbor = -1;
+
+/// A triangle at a vertex, of which the vertex is corner k.
+struct Incidence {
+    std::uint32_t triangle;
+    std::uint32_t k;
+};
+
+/// Where a vertex is.
+enum class Place : std::uint8_t {
+    kInside,
+    kWall,    ///< flow along the wall only
+    kCorner,  ///< two walls that meet at an angle: no flow
+};
+
+/// One closed curve of walls.
+struct BoundaryLoop {
+    std::uint32_t component;
+    double length = 0.0;  ///< [m]
+    Vec3 center;          ///< mean of its vertices
+    bool outer = false;   ///< the longest of its component; the others are holes
+};
+
+/// An oriented triangle surface, flat or curved, with or without walls, of one or more connected components.
+///
+/// Corners run counterclockwise seen from the tip of the normal. J a = n x a turns a tangent vector by 90 degrees,
+/// also counterclockwise.
+struct Surface {
+    // What lies beside what.
+    std::vector<std::array<std::uint32_t, 3>> corner;
+    std::vector<std::array<std::int32_t, 3>> neighbor;  ///< across the edge opposite to corner k, or kNoNeighbor
+    std::vector<std::size_t> ring_start;                ///< #V + 1
+    std::vector<Incidence> ring;                        ///< around each vertex, ordered by triangle
+    std::vector<std::uint32_t> component;               ///< of each vertex
+    std::vector<std::int32_t> loop;                     ///< of each vertex; -1: inside
+    std::vector<BoundaryLoop> loops;
+    std::uint32_t components = 0;
+
+    // Where it lies.
+    std::vector<Vec3> position;
+    std::vector<Vec3> normal;                     ///< of each triangle
+    std::vector<double> area;                     ///< of each triangle [m^2]
+    std::vector<std::array<Vec3, 3>> hat_slope;   ///< grad phi_k = n x e_k / (2 area) [1/m], e_k the edge opposite to k
+    std::vector<Vec3> vertex_normal;              ///< mean of the triangles around, weighted with area
+    std::vector<Place> place;                     ///< of each vertex
+    std::vector<Vec3> wall_normal;                ///< of each vertex: out of the film, where place is kNoNeighbor; else 0
+    std::vector<double> vertex_area;              ///< a third of the triangles around: sums to the area [m^2]
+    double total_area = 0.0;
+    double longest_edge = 0.0;  ///< [m]
+    double mean_edge = 0.0;     ///< of equilateral triangles of the same number and area [m]
+
+    std::size_t triangles() const { return corner.size(); }
+    std::size_t vertices() const { return position.size(); }
+    std::span<const Incidence> around(std::size_t v) const {
+        return std::span(ring).subspan(ring_start[v], ring_start[v + 1] - ring_start[v]);
+    }
+    /// The edge opposite to corner k, counterclockwise [m].
+    Vec3 edge(std::size_t t, std::size_t k) const {
+        return position[corner[t][(k + 2) % 3]] - position[corner[t][(k + 1) % 3]];
+    }
+    Vec3 point(std::size_t t, const std::array<double, 3>& b) const {
+        return b[0] * position[corner[t][0]] + b[1] * position[corner[t][1]] + b[2] * position[corner[t][2]];
+    }
+};
+
+/// @throws InputError  films that meet in a triple line, that cannot be oriented, or that fill space periodically
+Surface surface_of(const mesh::FoamMesh& mesh);
+
+/// Turns the tangent vector `u` of a surface with normal `from` into one of a surface with normal `to` by the smallest
+/// rotation that does so.
+Vec3 turned(const Vec3& u, const Vec3& from, const Vec3& to);
+
+}  // namespace lamella::vortex_particle

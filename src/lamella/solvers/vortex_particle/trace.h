@@ -1,0 +1,29 @@
+#pragma once
+
+// Straight on, over the edges of a surface of triangles.
+
+#include "lamella/solvers/vortex_particle/particles.h"
+#include "lamella/solvers/vortex_particle/surface.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace lamella::vortex_particle {
+
+/// A point of the surface.
+struct Spot {
+    std::uint32_t triangle;
+    std::array<double, 3> place;  ///< barycentric coordinates
+};
+
+/// Moves a spot along `displacement`, a vector of its triangle's plane that is turned about each edge that it crosses; a
+/// wall takes away what points out of the film. [method sheet 5.9]
+void walk(const Surface& s, Spot& spot, Vec3 displacement);
+
+/// Moves particles for a time `dt` with the velocity that is linear between vertices (the fourth-order method of Runge
+/// and Kutta), and turns what velocity they carry along with the surface.
+/// @param velocity  of vertices [m/s]
+void trace(const Surface& s, std::span<const Vec3> velocity, double dt, Particles& particles);
+
+}  // namespace lamella::vortex_particle

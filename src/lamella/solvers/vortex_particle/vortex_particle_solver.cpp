@@ -1,0 +1,279 @@
+#include "lamella/solvers/vortex_particle/vortex_particle_solver.h"
+
+#include "lamella/core/error.h"
+#include "lamella/core/parallel.h"
+#include "lamella/film/surfactant.h"
+#include "lamella/linalg/conjugate_gradient.h"
+#include "lamella/solvers/vortex_particle/start.h"
+#include "lamella/solvers/vortex_particle/trace.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lamella::vortex_particle {
+namespace {
+
+const film::Problem& films_of(const sim::SolverInput& input) {
+    if (!input.films) throw InputError("the scene has no films; add a [[bubble]], [[film]] or [foam]");
+    return *input.films;
+}
+
+/// 1/eta of triangles, from the mean of their corners.
+std::vector<double> inverse_thickness(const Surface& s, std::span<const double> thickness) {
+    std::vector<double> inverse(s.triangles());
+    parallel_for(s.triangles(), [&](std::size_t t) {
+        const auto& [a, b, c] = s.corner[t];
+        inverse[t] = 3.0 / (thickness[a] + thickness[b] + thickness[c]);
+    });
+    return inverse;
+}
+
+}  // namespace
+
+VortexParticleSolver::VortexParticleSolver(const Options& options, const sim::SolverInput& input)
+    : options_(options),
+      input_(input),
+      surfactant_strength_(2.0 * film::thermal_energy(films_of(input).material) / input.films->material.liquid_density),
+      viscosity_(film::film_viscosity(input.films->material)),
+      surface_(surface_of(input.films->mesh)),
+      transfer_(surface_, options.transfer, options.kernel_radius * surface_.longest_edge),
+      flow_solver_(surface_),
+      diffusion_(surface_),
+      compression_(surface_) {
+    film::start_surfactant(input_.films->material);
+    if (!input_.films->events.empty())
+        throw InputError("vortex_particle: events are not built yet; take the [[event]] tables out");
+    for (const film::Wire& wire : input_.films->wires)
+        if (wire.moves() || (wire.ring && wire.ring->blow != 0.0))
+            throw InputError("vortex_particle: wires that move or blow are not built yet; the film stands still");
+    const std::vector<double> curvature = gaussian_curvature(surface_);
+    const double most = std::abs(*std::max_element(curvature.begin(), curvature.end(),
+                                                   [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    if (most * surface_.total_area > 1e-6) curvature_ = curvature;
+    std::vector<Vec3> gravity(surface_.triangles());
+    for (std::size_t t = 0; t < gravity.size(); ++t) {
+        const Vec3& g = input_.films->material.gravity;
+        gravity[t] = g - dot(g, surface_.normal[t]) * surface_.normal[t];
+    }
+    gravity_ = divergence(surface_, gravity);
+}
+
+void VortexParticleSolver::start(const sim::StartContext&) {
+    particles_ = start_particles(surface_, transfer_, *input_.films, options_, input_.seed);
+    bins_ = sort_by_triangle(particles_, surface_.triangles());
+    hole_circulation_ = hole_circulation(surface_, input_.films->vortices);
+    velocity_.assign(surface_.triangles(), {});
+    MeshFlow flow = particles_to_mesh();
+    recover_velocity(flow);
+    velocity_ = flow.velocity;
+    for (std::size_t p = 0; p < particles_.size(); ++p) particles_.velocity[p] = velocity_[particles_.triangle[p]];
+}
+
+/// [Tao24, section 4], in the form of the method sheet's section 5.
+sim::StepReport VortexParticleSolver::advance(double time_limit) {
+    const double left = time_limit - time_;
+    const double dt = choose_step(left);
+    const MeshFlow before = particles_to_mesh();
+    MeshFlow flow = before;
+    drag(dt, flow);
+    drive_circulation(dt, flow);
+    const std::vector<double> dilatation = compress(dt, flow);
+    diffuse(dt, flow);
+    recover_velocity(flow);
+    mesh_to_particles(dt, before, flow, dilatation);
+    move_particles(dt, flow);
+    velocity_ = std::move(flow.velocity);
+    time_ = left <= dt * (1.0 + 1e-9) ? time_limit : time_ + dt;
+    step_ = dt;
+    ++steps_;
+    observed_.reset();
+    return {.step = dt, .evaluations = 1, .iterations = iterations_};
+}
+
+/// Equal steps until the limit, none longer than speed and compression allow.
+double VortexParticleSolver::choose_step(double left) const {
+    double fastest = 0.0;
+    for (const Vec3& u : velocity_) fastest = std::max(fastest, squared_norm(u));
+    fastest = std::sqrt(fastest);
+    constexpr double kMostCompression = 0.5;  // |theta| dt [method sheet 14]
+    double dt = options_.largest_step;
+    if (fastest > 0.0) dt = std::min(dt, options_.courant * surface_.mean_edge / fastest);
+    if (fastest_dilatation_ > 0.0) dt = std::min(dt, kMostCompression / fastest_dilatation_);
+    if (!std::isfinite(fastest) || dt < 1e-6 * options_.largest_step)
+        throw NumericalError(fmt::format("vortex_particle: at {} s, step {}, the flow runs away: {} m/s, dilatation {} 1/s",
+                                         time_, steps_, fastest, fastest_dilatation_));
+    dt = left / std::ceil(left / dt - 1e-9);
+    constexpr double kSame = 1e-9;  // steps that differ by rounding are one step, and share their matrices
+    return std::abs(dt - step_) < kSame * dt ? step_ : dt;
+}
+
+MeshFlow VortexParticleSolver::particles_to_mesh() const {
+    Deposit sum = transfer_.deposit(surface_, particles_, bins_);
+    MeshFlow flow{.circulation = std::move(sum.circulation),
+                  .thickness = std::move(sum.volume),
+                  .surfactant = std::move(sum.amount),
+                  .area = std::move(sum.area),
+                  .outflow = {},
+                  .velocity = triangle_velocity(surface_, particles_, bins_, velocity_)};
+    for (std::size_t v = 0; v < surface_.vertices(); ++v) {
+        if (!(flow.area[v] > 0.0))
+            throw NumericalError(fmt::format("vortex_particle: at {} s, step {}, no particle is left around vertex {}",
+                                             time_, steps_, v));
+        flow.thickness[v] /= flow.area[v];
+        flow.surfactant[v] /= flow.area[v];
+    }
+    flow.outflow = divergence(surface_, flow.velocity);
+    return flow;
+}
+
+void VortexParticleSolver::drag(double dt, MeshFlow& flow) const {
+    if (options_.air_drag == 0.0) return;
+    const double left = std::exp(-options_.air_drag * dt);
+    for (double& value : flow.circulation) value *= left;
+    for (double& value : flow.outflow) value *= left;
+}
+
+/// Where surfactant per liquid is uneven its pull turns the film, gravity along closed loops never does.
+/// [Tao24, eq. 14]
+void VortexParticleSolver::drive_circulation(double dt, MeshFlow& flow) {
+    if (options_.incompressible) return;
+    const std::vector<double> torque =
+        surfactant_torque(surface_, flow.surfactant, flow.thickness, surfactant_strength_);
+    for (std::size_t v = 0; v < torque.size(); ++v) flow.circulation[v] += dt * torque[v];
+    const std::vector<double> around = wall_torque(surface_, flow.surfactant, flow.thickness, surfactant_strength_);
+    for (std::size_t l = 0; l < around.size(); ++l) hole_circulation_[l] -= dt * around[l];
+}
+
+/// Surfactant at the end of the step, which resists compression: with Gamma* - Gamma = -dt Gamma theta*,
+///
+///     [diag(A_i / (dt Gamma_i)) + (2 R T dt / rho) K_(1/eta)] (Gamma* - Gamma) = -D - dt G - (2 R T dt / rho) K_(1/eta) Gamma
+///
+/// G_i the weak divergence of gravity. [Tao24, eq. 16; method sheet 5.4] @returns theta* at vertices [1/s]
+std::vector<double> VortexParticleSolver::compress(double dt, MeshFlow& flow) {
+    std::vector<double> dilatation(surface_.vertices(), 0.0);
+    iterations_ = 0;
+    if (!options_.incompressible) {
+        const std::vector<double> weight = inverse_thickness(surface_, flow.thickness);
+        const double stiffness = dt * surfactant_strength_;
+        std::vector<double> mass(surface_.vertices()), right(surface_.vertices());
+        for (std::size_t v = 0; v < mass.size(); ++v) {
+            mass[v] = surface_.vertex_area[v] / (dt * flow.surfactant[v]);
+            right[v] = -flow.outflow[v] - dt * gravity_[v];
+        }
+        add_stiffness(surface_, -stiffness, weight, flow.surfactant, right);
+        const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
+            y.resize(x.size());
+            for (std::size_t v = 0; v < x.size(); ++v) y[v] = mass[v] * x[v];
+            add_stiffness(surface_, stiffness, weight, x, y);
+        };
+        const auto precondition = [&](const std::vector<double>& x, std::vector<double>& y) {
+            y = x;
+            compression_.solve(y);
+        };
+        if (reference_.step != dt) refresh_reference(dt, flow);
+        constexpr int kMostIterations = 200, kSlow = 12;
+        std::vector<double> change(surface_.vertices(), 0.0);
+        const linalg::IterativeSolution done = linalg::preconditioned_conjugate_gradient(
+            apply, precondition, right, change, options_.solve_tolerance, kMostIterations);
+        iterations_ = done.iterations;
+        if (!(done.residual < std::sqrt(options_.solve_tolerance)))
+            throw NumericalError(fmt::format("vortex_particle: at {} s, step {}, the surfactant's equation has a residual "
+                                             "of {} after {} iterations", time_, steps_, done.residual, done.iterations));
+        if (done.iterations > kSlow) reference_.step = 0.0;  // the next step factors anew
+        for (std::size_t v = 0; v < dilatation.size(); ++v) dilatation[v] = -change[v] / (dt * flow.surfactant[v]);
+    }
+    fastest_dilatation_ = 0.0;
+    for (std::size_t v = 0; v < dilatation.size(); ++v) {
+        flow.outflow[v] = surface_.vertex_area[v] * dilatation[v];
+        fastest_dilatation_ = std::max(fastest_dilatation_, std::abs(dilatation[v]));
+    }
+    return dilatation;
+}
+
+void VortexParticleSolver::refresh_reference(double dt, const MeshFlow& flow) {
+    reference_ = {dt, flow.thickness, flow.surfactant};
+    factor_reference();
+}
+
+void VortexParticleSolver::factor_reference() {
+    std::vector<double> mass(surface_.vertices());
+    for (std::size_t v = 0; v < mass.size(); ++v)
+        mass[v] = surface_.vertex_area[v] / (reference_.step * reference_.surfactant[v]);
+    compression_.factorize(surface_, reference_.step * surfactant_strength_,
+                           inverse_thickness(surface_, reference_.thickness), mass);
+}
+
+/// (M + nu dt K) omega = Omega, and the same for the dilatation; on curved films the vorticity has a source besides,
+/// 2 nu div(K_G grad Psi), without which a bubble could not rotate as a whole for long. [method sheet 5.5]
+void VortexParticleSolver::diffuse(double dt, MeshFlow& flow) {
+    if (viscosity_ == 0.0) return;
+    if (diffusion_step_ != dt) {
+        diffusion_.factorize(surface_, viscosity_ * dt, {}, surface_.vertex_area);
+        diffusion_step_ = dt;
+    }
+    if (options_.viscosity == Viscosity::kSurface && !curvature_.empty()) {
+        const std::vector<double> stream = flow_solver_.stream_function(surface_, flow.circulation, hole_circulation_);
+        add_stiffness(surface_, -2.0 * viscosity_ * dt, curvature_, stream, flow.circulation);
+    }
+    for (std::vector<double>* cell : {&flow.circulation, &flow.outflow}) {
+        diffusion_.solve(*cell);
+        for (std::size_t v = 0; v < cell->size(); ++v) (*cell)[v] *= surface_.vertex_area[v];
+    }
+}
+
+void VortexParticleSolver::recover_velocity(MeshFlow& flow) const {
+    flow.velocity =
+        rotated_gradient(surface_, flow_solver_.stream_function(surface_, flow.circulation, hole_circulation_));
+    const std::vector<Vec3> away = gradient(surface_, flow_solver_.potential(surface_, flow.outflow));
+    for (std::size_t t = 0; t < away.size(); ++t) flow.velocity[t] += away[t];
+}
+
+/// Particles take over changes, not values: what the mesh cannot see of them stays [Tao24, eq. 21]. Velocities follow
+/// slowly what it does see. Areas need not: a thickness that drifted is carried by the liquid, which is conserved (a blend
+/// as in the method sheet's 12.10, tried, makes thickness of thick and thin neighbors alike and liquid out of nothing).
+void VortexParticleSolver::mesh_to_particles(double dt,
+                                             const MeshFlow& before,
+                                             const MeshFlow& after,
+                                             const std::vector<double>& dilatation) {
+    const std::size_t vertices = surface_.vertices();
+    std::vector<double> spin(vertices), room(vertices);
+    for (std::size_t v = 0; v < vertices; ++v) {
+        spin[v] = (after.circulation[v] - before.circulation[v]) / before.area[v];
+        room[v] = std::log(surface_.vertex_area[v] / before.area[v]);
+    }
+    const std::vector<Vec3> smooth = vertex_velocity(surface_, after.velocity);
+    const double relaxed = -std::expm1(-options_.area_relaxation * dt);
+    const double followed = -std::expm1(-options_.velocity_blend * dt);
+    const std::vector<double> spin_at = transfer_.gather(surface_, particles_, spin);
+    const std::vector<double> room_at =
+        relaxed > 0.0 ? transfer_.gather(surface_, particles_, room) : std::vector<double>(particles_.size(), 0.0);
+    parallel_for(particles_.size(), [&](std::size_t p) {
+        const std::size_t t = particles_.triangle[p];
+        const auto& [a, b, c] = surface_.corner[t];
+        const auto& at = particles_.place[p];
+        particles_.circulation[p] += particles_.area[p] * spin_at[p];
+        particles_.velocity[p] += after.velocity[t] - before.velocity[t];
+        const Vec3 mesh = at[0] * smooth[a] + at[1] * smooth[b] + at[2] * smooth[c];
+        Vec3& u = particles_.velocity[p];
+        u += followed * (mesh - u);
+        u -= dot(u, surface_.normal[t]) * surface_.normal[t];
+        const double theta = at[0] * dilatation[a] + at[1] * dilatation[b] + at[2] * dilatation[c];
+        particles_.area[p] *= std::exp(theta * dt + relaxed * room_at[p]);
+    });
+}
+
+/// With the velocity of the middle of the step, as the last two tell [method sheet 12.11].
+void VortexParticleSolver::move_particles(double dt, const MeshFlow& flow) {
+    std::vector<Vec3> velocity = flow.velocity;
+    if (options_.tracer == Tracer::kExtrapolated && steps_ > 0) {
+        const double ahead = 0.5 * dt / step_;
+        for (std::size_t t = 0; t < velocity.size(); ++t) velocity[t] += ahead * (velocity[t] - velocity_[t]);
+    }
+    trace(surface_, vertex_velocity(surface_, velocity), dt, particles_);
+    bins_ = sort_by_triangle(particles_, surface_.triangles());
+}
+
+}  // namespace lamella::vortex_particle

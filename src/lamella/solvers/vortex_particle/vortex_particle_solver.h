@@ -1,0 +1,101 @@
+#pragma once
+
+#include "lamella/sim/registry.h"
+#include "lamella/sim/solver.h"
+#include "lamella/solvers/vortex_particle/flow.h"
+#include "lamella/solvers/vortex_particle/options.h"
+#include "lamella/solvers/vortex_particle/particles.h"
+#include "lamella/solvers/vortex_particle/transfer.h"
+
+#include <optional>
+#include <vector>
+
+namespace lamella::vortex_particle {
+
+/// What the mesh knows of the flow at one moment.
+struct MeshFlow {
+    std::vector<double> circulation;  ///< Omega of the cell of each vertex [m^2/s]
+    std::vector<double> thickness;    ///< eta of vertices [m]
+    std::vector<double> surfactant;   ///< Gamma of vertices [mol/m^2]
+    std::vector<double> area;         ///< that particles say they have around each vertex [m^2]
+    std::vector<double> outflow;      ///< D of the cell of each vertex [m^2/s]
+    std::vector<Vec3> velocity;       ///< of triangles [m/s]
+};
+
+/// The flow inside a film: particles that carry circulation, liquid and surfactant along a surface of triangles, which
+/// finds their velocity [Tao24], in the form of docs/vortex_particle.md.
+class VortexParticleSolver final : public sim::Solver {
+public:
+    /// @throws InputError  options or films that do not go together
+    VortexParticleSolver(const Options& options, const sim::SolverInput& input);
+
+    void start(const sim::StartContext& context) override;
+    sim::StepReport advance(double time_limit) override;
+
+    double time() const override { return time_; }
+    std::int64_t step() const override { return steps_; }
+
+    sim::Frame frame() const override;
+    std::vector<sim::Scalar> scalars() const override;
+    std::vector<sim::Scalar> characteristic_numbers() const override;
+
+    void save(sim::StateWriter& out) const override;
+    void load(sim::StateReader& in) override;
+
+    const Surface& surface() const { return surface_; }
+    const Particles& particles() const { return particles_; }
+    /// The flow of this moment, for whoever looks.
+    const MeshFlow& observed() const;
+    double kinetic_energy() const;  ///< [J]
+
+private:
+    // The stages of a step, in order.
+    double choose_step(double time_limit) const;
+    MeshFlow particles_to_mesh() const;
+    void drag(double dt, MeshFlow& flow) const;
+    void drive_circulation(double dt, MeshFlow& flow);
+    std::vector<double> compress(double dt, MeshFlow& flow);
+    void diffuse(double dt, MeshFlow& flow);
+    void recover_velocity(MeshFlow& flow) const;
+    void mesh_to_particles(double dt, const MeshFlow& before, const MeshFlow& after, const std::vector<double>& dilatation);
+    void move_particles(double dt, const MeshFlow& flow);
+
+    void refresh_reference(double dt, const MeshFlow& flow);
+    void factor_reference();
+
+    Options options_;
+    sim::SolverInput input_;
+    double surfactant_strength_;  ///< 2 R T / rho [m^2/s^2 per mol/m^3]
+    double viscosity_;            ///< of the film [m^2/s]
+
+    // The film, and what is worked out for it once.
+    Surface surface_;
+    Transfer transfer_;
+    FlowSolver flow_solver_;
+    ShiftedStiffness diffusion_, compression_;
+    std::vector<double> curvature_;  ///< Gaussian, of triangles; empty where the film is flat [1/m^2]
+    std::vector<double> gravity_;    ///< weak divergence of gravity along the film [m^2/s^2]
+
+    // The state.
+    Particles particles_;
+    Bins bins_;
+    std::vector<double> hole_circulation_;
+    std::vector<Vec3> velocity_;     ///< of triangles, that the last step found
+    double time_ = 0.0;
+    std::int64_t steps_ = 0;
+    double step_ = 0.0;              ///< the last one
+    double fastest_dilatation_ = 0.0;
+    std::int64_t iterations_ = 0;    ///< of the surfactant's equation in the last step
+    /// For which its equation is factored; the factors precondition those of other steps.
+    struct Reference {
+        double step = 0.0;
+        std::vector<double> thickness, surfactant;
+    } reference_;
+    double diffusion_step_ = 0.0;    ///< for which the diffusion is factored
+    mutable std::optional<MeshFlow> observed_;
+};
+
+/// Adds the solver "vortex_particle".
+void register_vortex_particle(sim::SolverRegistry& registry);
+
+}  // namespace lamella::vortex_particle
