@@ -29,6 +29,7 @@ enum class RandomStream : std::uint32_t {
     kMeshJitter = 6,      ///< vertices off the planes of a grid
     kAnneal = 7,          ///< volumes while a cluster looks for a better shape
     kFoamSizes = 8,       ///< volumes of a cluster's bubbles
+    kFilmNoise = 9,       ///< directions of the gradient noise on films
 };
 
 /// 128 random bits.

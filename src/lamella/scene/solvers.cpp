@@ -1,6 +1,7 @@
 #include "lamella/scene/scene.h"
 #include "lamella/solvers/bubble/bubble_solver.h"
 #include "lamella/solvers/equilibrium/equilibrium_solver.h"
+#include "lamella/solvers/melp/melp_solver.h"
 #include "lamella/solvers/vortex_sheet/vortex_sheet_solver.h"
 
 namespace lamella::scene {
@@ -9,6 +10,7 @@ sim::SolverRegistry all_solvers() {
     sim::SolverRegistry registry;
     bubble::register_bubble(registry);
     equilibrium::register_equilibrium(registry);
+    melp::register_melp(registry);
     vortex_sheet::register_vortex_sheet(registry);
     return registry;
 }

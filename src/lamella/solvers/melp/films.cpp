@@ -1,0 +1,56 @@
+#include "lamella/solvers/melp/films.h"
+
+#include <algorithm>
+
+namespace lamella::melp {
+namespace {
+
+// Where hardly a fine particle reaches, a film of this share of the mean thickness keeps accelerations finite. It is
+// not liquid: no total counts it.
+constexpr double kThinnest = 0.05;
+
+std::vector<double> region_areas(const Geometry& geometry, const CoarseParticles& coarse, std::size_t regions) {
+    std::vector<double> area(regions, 0.0);
+    for (std::size_t e = 0; e < coarse.size(); ++e) area[static_cast<std::size_t>(coarse.region[e])] += geometry.area[e];
+    return area;
+}
+
+}  // namespace
+
+Films films_of(const Geometry& geometry,
+               const CoarseParticles& coarse,
+               const Gathered& gathered,
+               const std::vector<EvenFilm>& even,
+               const film::SurfactantLaw& law) {
+    const std::size_t count = coarse.size();
+    const std::vector<double> area = region_areas(geometry, coarse, even.size());
+    std::vector<double> liquid(even.size(), 0.0);
+    for (std::size_t e = 0; e < count; ++e) liquid[static_cast<std::size_t>(coarse.region[e])] += gathered.liquid_volume[e];
+    Films films;
+    films.liquid_volume.resize(count);
+    films.thickness.resize(count);
+    films.seen_thickness.resize(count);
+    films.concentration.resize(count);
+    films.tension.resize(count);
+    films.along.resize(count);
+    for (std::size_t e = 0; e < count; ++e) {
+        const auto r = static_cast<std::size_t>(coarse.region[e]);
+        const double a = geometry.area[e];
+        const bool evenly = even[r].liquid_volume > 0.0;
+        const double share = evenly ? a / area[r] : 0.0;
+        const double volume = evenly ? share * even[r].liquid_volume : gathered.liquid_volume[e];
+        const double thinnest = kThinnest * (evenly ? even[r].liquid_volume : liquid[r]) / area[r];
+        films.liquid_volume[e] = std::max(volume, thinnest * a);
+        films.thickness[e] = films.liquid_volume[e] / a;
+        films.concentration[e] = (evenly ? share * even[r].surfactant : gathered.surfactant[e]) / a;
+        films.tension[e] = law.tension(films.concentration[e]);
+        films.seen_thickness[e] = volume > 0.0 && !evenly ? gathered.seen_volume[e] / volume : films.thickness[e];
+        if (volume > 0.0 && !evenly) {
+            const Vec3 u = gathered.momentum[e] / volume;
+            films.along[e] = u - dot(u, geometry.normal[e]) * geometry.normal[e];
+        }
+    }
+    return films;
+}
+
+}  // namespace lamella::melp
