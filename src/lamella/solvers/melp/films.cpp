@@ -45,10 +45,10 @@ Films films_of(const Geometry& geometry,
         films.concentration[e] = (evenly ? share * even[r].surfactant : gathered.surfactant[e]) / a;
         films.tension[e] = law.tension(films.concentration[e]);
         films.seen_thickness[e] = volume > 0.0 && !evenly ? gathered.seen_volume[e] / volume : films.thickness[e];
-        if (volume > 0.0 && !evenly) {
-            const Vec3 u = gathered.momentum[e] / volume;
-            films.along[e] = u - dot(u, geometry.normal[e]) * geometry.normal[e];
-        }
+        Vec3 u;
+        if (evenly) u = coarse.velocity[e];
+        else if (volume > 0.0) u = gathered.momentum[e] / volume;
+        films.along[e] = u - dot(u, geometry.normal[e]) * geometry.normal[e];
     }
     return films;
 }

@@ -43,9 +43,8 @@ PatchShape shape_of(const Patch& patch) {
     const double zu = c[1], zv = c[2], zuu = 2.0 * c[3], zuv = c[4], zvv = 2.0 * c[5];
     const double g = 1.0 + zu * zu + zv * zv;
     const double sum = ((1.0 + zv * zv) * zuu - 2.0 * zu * zv * zuv + (1.0 + zu * zu) * zvv) / (g * std::sqrt(g));
-    const double product = (zuu * zvv - zuv * zuv) / (g * g);
     const Vec3 normal = patch.frame.normal - zu * patch.frame.e1 - zv * patch.frame.e2;
-    return {normal / norm(normal), sum, sum * sum - 2.0 * product};
+    return {normal / norm(normal), sum};
 }
 
 namespace {
@@ -88,7 +87,6 @@ Geometry geometry_of(const CoarseParticles& coarse, double support_radius) {
     g.patch.resize(count);
     g.normal.resize(count);
     g.curvature.resize(count);
-    g.squared_curvature.resize(count);
     g.area.resize(count);
     g.gradient_map.resize(count);
     constexpr std::size_t kBlock = 256;
@@ -98,7 +96,6 @@ Geometry geometry_of(const CoarseParticles& coarse, double support_radius) {
             const PatchShape shape = shape_of(g.patch[i]);
             g.normal[i] = shape.normal;
             g.curvature[i] = shape.curvature;
-            g.squared_curvature[i] = shape.squared_curvature;
             double density = same.kernel.value(0.0);
             for (std::size_t k = same.begin(i); k < same.end(i); ++k) density += same.weight[k];
             g.area[i] = 1.0 / density;

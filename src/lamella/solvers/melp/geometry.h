@@ -38,12 +38,11 @@ struct Patch {
 /// Where they are too few for a quadratic (less than six, or on a line) the patch is flat.
 Patch fit_patch(std::span<const Vec3> position, const Vec3& frame_normal, const Neighbors& neighbors, std::size_t i);
 
-/// Normal and curvatures of a patch at its origin. A sphere whose normal points outward has curvature -2 / R: this is
+/// Normal and curvature of a patch at its origin. A sphere whose normal points outward has curvature -2 / R: this is
 /// the K of [method sheet 1], the Laplacian of the height.
 struct PatchShape {
     Vec3 normal;
-    double curvature = 0.0;          ///< kappa_1 + kappa_2 [1/m]
-    double squared_curvature = 0.0;  ///< kappa_1^2 + kappa_2^2 [1/m^2]
+    double curvature = 0.0;  ///< kappa_1 + kappa_2 [1/m]
 };
 PatchShape shape_of(const Patch& patch);
 
@@ -52,10 +51,9 @@ struct Geometry {
     NeighborLists neighbors;
     std::vector<Patch> patch;
     std::vector<Vec3> normal;
-    std::vector<double> curvature;          ///< measured, for reports; no force comes from it [1/m]
-    std::vector<double> squared_curvature;  ///< [1/m^2]
-    std::vector<double> area;               ///< 1 / sum W, the particle itself counted [m^2]
-    std::vector<Tensor> gradient_map;       ///< makes gradients of linear fields exact, and tangent: see gradient()
+    std::vector<double> curvature;     ///< measured, for reports; no force comes from it [1/m]
+    std::vector<double> area;          ///< 1 / sum W, the particle itself counted [m^2]
+    std::vector<Tensor> gradient_map;  ///< makes gradients of linear fields exact, and tangent: see gradient()
 
     std::size_t size() const { return normal.size(); }
 };

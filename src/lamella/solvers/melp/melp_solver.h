@@ -47,8 +47,10 @@ private:
     double slowest_period(const std::vector<Gas>& bubbles) const;
     // The stages of a step, in order.
     double choose_step(double time_limit) const;
+    double theta_of(double dt) const;
     SurfactantStep push_along_film(double dt);
     NormalStep push_along_normals(double dt);
+    void filter_short_waves();
     void give_to_fine(double dt);
     void move_coarse(double dt, const NormalStep& step);
     void move_fine(double dt);

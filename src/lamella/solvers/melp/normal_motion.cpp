@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace lamella::melp {
 
@@ -88,46 +89,68 @@ std::vector<std::size_t> clusters(const NormalProblem& p) {
     return cluster;
 }
 
-/// Films push and twist a free cluster by nothing as a whole. Forces that have lost their part along the film do, a little;
-/// the smallest change of the forces along the normals per area that mends it is made. [method sheet 16.4 c']
-void remove_rigid_residual(const NormalProblem& p, std::size_t cluster, const std::vector<std::size_t>& cluster_of, std::vector<double>& force) {
-    std::vector<std::size_t> members;
-    Vec3 center;
-    double area = 0.0;
-    for (std::size_t i = 0; i < p.coarse.size(); ++i) {
-        const std::size_t r = region_of(p.coarse, i);
-        if (cluster_of[r] != cluster) continue;
-        if (!p.gas[r].closed) return;  // a film on a wire is held
-        members.push_back(i);
-        center += p.geometry.area[i] * p.coarse.position[i];
-        area += p.geometry.area[i];
+/// Bubbles that touch, free of wires: films push and twist them by nothing as a whole. Forces that have lost their part
+/// along the film do, a little. [method sheet 16.4 c']
+class FreeCluster {
+public:
+    FreeCluster(const NormalProblem& p, std::vector<std::size_t> members) : p_(p), members_(std::move(members)) {
+        for (const std::size_t i : members_) {
+            center_ += p.geometry.area[i] * p.coarse.position[i];
+            length_ += p.geometry.area[i];
+        }
+        center_ = center_ / length_;
+        length_ = std::sqrt(length_);
     }
-    if (members.empty()) return;
-    center = center / area;
-    const double length = std::sqrt(area);
-    constexpr std::size_t kRigid = 6;
-    const auto rigid = [&](std::size_t i, const Vec3& f) {
-        const Vec3 twist = cross(p.coarse.position[i] - center, f) / length;
-        return std::array<double, kRigid>{f[0], f[1], f[2], twist[0], twist[1], twist[2]};
-    };
-    std::array<double, kRigid * kRigid> matrix{};
-    std::array<double, kRigid> residual{};
-    for (const std::size_t i : members) {
-        const auto e = rigid(i, p.geometry.normal[i]);
-        const Vec3 whole = force[i] * p.geometry.normal[i] + p.internal[i] + (p.floating ? p.external[i] : Vec3{});
-        const auto f = rigid(i, whole);
-        for (std::size_t a = 0; a < kRigid; ++a) {
-            residual[a] += f[a];
-            for (std::size_t b = 0; b < kRigid; ++b) matrix[a * kRigid + b] += p.geometry.area[i] * e[a] * e[b];
+
+    /// Takes from values along the normals what pushes and twists: of all changes share_i e_i . z, with e_i the rigid
+    /// motions along the normal, the one after which sum_i (values_i n_i + beside_i) has no resultant and no moment.
+    void remove_resultant(std::vector<double>& values, std::span<const Vec3> beside, std::span<const double> share) const {
+        std::array<double, kRigid * kRigid> matrix{};
+        std::array<double, kRigid> resultant{};
+        for (const std::size_t i : members_) {
+            const Rigid e = rigid(i, p_.geometry.normal[i]);
+            const Rigid f = rigid(i, values[i] * p_.geometry.normal[i] + beside[i]);
+            for (std::size_t a = 0; a < kRigid; ++a) {
+                resultant[a] += f[a];
+                for (std::size_t b = 0; b < kRigid; ++b) matrix[a * kRigid + b] += share[i] * e[a] * e[b];
+            }
+        }
+        // A sphere cannot be twisted by forces along its normals: such directions stay as they are.
+        constexpr double kCannot = 1e-4;
+        const auto z = linalg::solve_symmetric(kRigid, matrix, resultant, kCannot).x;
+        for (const std::size_t i : members_) {
+            const Rigid e = rigid(i, p_.geometry.normal[i]);
+            for (std::size_t a = 0; a < kRigid; ++a) values[i] -= share[i] * e[a] * z[a];
         }
     }
-    // A sphere cannot be twisted by forces along its normals: such directions stay as they are.
-    constexpr double kCannot = 1e-4;
-    const auto z = linalg::solve_symmetric(kRigid, matrix, residual, kCannot).x;
-    for (const std::size_t i : members) {
-        const auto e = rigid(i, p.geometry.normal[i]);
-        for (std::size_t a = 0; a < kRigid; ++a) force[i] -= p.geometry.area[i] * e[a] * z[a];
+
+private:
+    static constexpr std::size_t kRigid = 6;
+    using Rigid = std::array<double, kRigid>;
+
+    /// A vector at a particle and its moment about the center, over the cluster's size.
+    Rigid rigid(std::size_t i, const Vec3& f) const {
+        const Vec3 moment = cross(p_.coarse.position[i] - center_, f) / length_;
+        return {f[0], f[1], f[2], moment[0], moment[1], moment[2]};
     }
+
+    const NormalProblem& p_;
+    std::vector<std::size_t> members_;
+    Vec3 center_;
+    double length_ = 0.0;
+};
+
+std::vector<FreeCluster> free_clusters(const NormalProblem& p) {
+    const std::vector<std::size_t> cluster_of = clusters(p);
+    std::vector<std::vector<std::size_t>> members(p.gas.size());
+    for (std::size_t i = 0; i < p.coarse.size(); ++i) members[cluster_of[region_of(p.coarse, i)]].push_back(i);
+    std::vector<FreeCluster> free;
+    for (std::vector<std::size_t>& group : members) {
+        const bool held = std::any_of(group.begin(), group.end(),
+                                      [&](std::size_t i) { return !p.gas[region_of(p.coarse, i)].closed; });
+        if (!group.empty() && !held) free.emplace_back(p, std::move(group));
+    }
+    return free;
 }
 
 /// How forces of tension and cohesion change with velocities along the normals.
@@ -136,9 +159,10 @@ public:
     FilmStiffness(const NormalProblem& p, const Pairs& pairs) : p_(p), pairs_(pairs), diagonal_(p.coarse.size()) {
         const Neighbors& same = p.geometry.neighbors.same;
         const Neighbors& other = p.geometry.neighbors.other;
+        const std::vector<Vec3>& n = p.geometry.normal;
         parallel_for(diagonal_.size(), [&](std::size_t i) {
-            double sum = pairs.own[i] * p.geometry.area[i] * p.geometry.squared_curvature[i];
-            for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum -= pairs.same[k];
+            double sum = 0.0;
+            for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum -= pairs.same[k] * dot(n[i], n[same.index[k]]);
             for (std::size_t k = other.begin(i); k < other.end(i); ++k) sum -= pairs.other[k];
             diagonal_[i] = sum;
         });
@@ -177,22 +201,23 @@ std::vector<double> growth(const NormalProblem& p, const std::vector<double>& v)
 NormalStep move_along_normals(const NormalProblem& p) {
     const std::size_t count = p.coarse.size();
     const Pairs pairs = pair_strengths(p);
+    const std::vector<FreeCluster> free = free_clusters(p);
     std::vector<double> force = forces(p, pairs);
-    const std::vector<std::size_t> cluster_of = clusters(p);
-    for (std::size_t r = 0; r < p.gas.size(); ++r)
-        if (cluster_of[r] == r) remove_rigid_residual(p, r, cluster_of, force);
+    std::vector<Vec3> beside(p.internal.begin(), p.internal.end());
+    for (std::size_t i = 0; p.floating && i < count; ++i) beside[i] += p.external[i];
+    for (const FreeCluster& cluster : free) cluster.remove_resultant(force, beside, p.geometry.area);
 
     const FilmStiffness stiffness(p, pairs);
     const double implicit = p.theta * p.theta * p.dt * p.dt, mixed = p.theta * (1.0 - p.theta) * p.dt * p.dt;
     std::vector<double> gas(p.gas.size());  // dt^2 p / V
     for (std::size_t r = 0; r < gas.size(); ++r)
         gas[r] = p.gas[r].closed ? p.dt * p.dt * p.gas[r].amount / (p.gas[r].volume * p.gas[r].volume) : 0.0;
-    std::vector<double> inertia(count), right(count), scale(count);
+    std::vector<double> inertia(count), given(count), right(count), scale(count);
     parallel_for(count, [&](std::size_t i) {
         const double a = p.geometry.area[i];
         inertia[i] = p.mass[i] * (1.0 + p.dt * p.damping);
-        right[i] = p.mass[i] * p.velocity[i] + p.dt * (force[i] + dot(p.external[i], p.geometry.normal[i])) +
-                   mixed * stiffness.apply(p.velocity, i);
+        given[i] = p.mass[i] * p.velocity[i] + p.dt * (force[i] + dot(p.external[i], p.geometry.normal[i]));
+        right[i] = given[i] + mixed * stiffness.apply(p.velocity, i);
         scale[i] = 1.0 / (inertia[i] - implicit * stiffness.diagonal(i) + gas[region_of(p.coarse, i)] * a * a);
     });
     const auto apply = [&](const std::vector<double>& v, std::vector<double>& y) {
@@ -207,8 +232,17 @@ NormalStep move_along_normals(const NormalProblem& p) {
     step.velocity.assign(p.velocity.begin(), p.velocity.end());
     constexpr int kMostIterations = 2000;
     step.solution = linalg::conjugate_gradient(apply, scale, right, step.velocity, p.tolerance, kMostIterations);
+
+    // What the implicit terms have added pushes nothing as a whole either: a rigid motion mends that, which strains no film.
+    std::vector<double> added(count);
+    for (std::size_t i = 0; i < count; ++i) added[i] = inertia[i] * step.velocity[i] - given[i];
+    const std::vector<Vec3> nothing(count);
+    for (const FreeCluster& cluster : free) cluster.remove_resultant(added, nothing, p.mass);
     step.mean.resize(count);
-    for (std::size_t i = 0; i < count; ++i) step.mean[i] = p.theta * step.velocity[i] + (1.0 - p.theta) * p.velocity[i];
+    for (std::size_t i = 0; i < count; ++i) {
+        step.velocity[i] = (given[i] + added[i]) / inertia[i];
+        step.mean[i] = p.theta * step.velocity[i] + (1.0 - p.theta) * p.velocity[i];
+    }
     return step;
 }
 

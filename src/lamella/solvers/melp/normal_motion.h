@@ -40,13 +40,16 @@ struct NormalStep {
 ///
 /// with the pair forces and pressures F0, their derivatives J_film along the normals,
 ///
-///   (J_film v)_i = sum_j c_ij (v_j - v_i) + tau_i a_i |kappa|^2_i v_i,   c_ij = (tau_i + tau_j) / 2 a_i a_j omega_ij,
+///   (J_film v)_i = sum_j c_ij (v_j - n_i . n_j v_i),   c_ij = (tau_i + tau_j) / 2 a_i a_j omega_ij,
 ///
 /// and that of each gas, -(p / V) a a^T, always fully implicit: the breathing of bubbles is far faster than any step.
-/// The term with the curvatures lets a film move as a whole without resistance.
+/// The cosine lets a film move as a whole without resistance: v = U . n changes no force where particles are evenly
+/// spread. It stands for the |kappa|^2 of the sheet, sum c (1 - n_i . n_j) = tau a |kappa|^2 in the limit; with curvatures
+/// from patches, right to half a percent, a flying bubble gained 0.017 % of its speed per millisecond.
 ///
 /// Regions cohere where their films touch [method sheet 16.4, eq. 11]: two films have the tension of one in common, and
-/// meet a third at 120 degrees. What remains of the internal forces as a push or a twist of a free cluster is taken away.
+/// meet a third at 120 degrees. Internal forces, `internal` along the film counted, neither push nor twist a free cluster as
+/// a whole: what discretization leaves is removed.
 NormalStep move_along_normals(const NormalProblem& problem);
 
 /// The tension of the particle's own film and that toward other regions, per interface tension; gamma is how much film

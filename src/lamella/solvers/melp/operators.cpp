@@ -64,4 +64,10 @@ std::vector<Vec3> unevenness(const Geometry& g, std::span<const Vec3> x) {
     });
 }
 
+std::vector<Vec3> roughness(const Geometry& g, std::span<const Vec3> w) {
+    return sum_over_neighbors<Vec3>(g, [&](Vec3& sum, std::size_t i, std::size_t j, std::size_t k) {
+        sum += (g.area[j] * g.neighbors.same.weight[k]) * (w[i] - w[j]);
+    });
+}
+
 }  // namespace lamella::melp

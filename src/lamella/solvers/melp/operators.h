@@ -28,4 +28,7 @@ std::vector<double> laplacian(const Geometry& geometry, std::span<const double> 
 /// sum_j a_j grad W_ij: zero where particles are evenly spread; at an edge it points into the film [1/m].
 std::vector<Vec3> unevenness(const Geometry& geometry, std::span<const Vec3> position);
 
+/// w minus its average over the kernel: keeps only what varies from particle to particle.
+std::vector<Vec3> roughness(const Geometry& geometry, std::span<const Vec3> w);
+
 }  // namespace lamella::melp

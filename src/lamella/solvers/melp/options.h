@@ -42,6 +42,7 @@ struct Options {
     Vec3 wind;
     bool floating = false;
     double damping = 0.0;
+    double grid_filter = 0.1;
     double junction_correction = 0.3;
     bool redistribution = true;
     double volume_rate = 20.0;
@@ -57,7 +58,7 @@ struct Options {
         option("support_radius", support_radius, sim::between(2.0, 6.0),
                {"of the kernels, in spacings of the coarse particles", "-", "[method sheet 16]"});
         option("theta", theta, sim::between(0.5, 1.0),
-               {"of the motion along the normals: 0.5 keeps the energy; 1 damps, to settle", "-", "[method sheet 16.2]"});
+               {"of the motion along the normals: 0.5 keeps the energy, 1 damps; steps longer than a tenth of the slowest swing of the smallest bubble take 1", "-", "[method sheet 16.2]"});
         option("steps_per_period", steps_per_period, sim::at_least(0.0),
                {"of the slowest swing of the smallest bubble; 0: only how far particles move limits the step"});
         option("cfl", cfl, sim::between(0.01, 2.0), {"how far particles move in a step, in spacings"});
@@ -77,6 +78,9 @@ struct Options {
         option("floating", floating,
                {"the air carries the weight of free bubbles, by forces along the normals: they drain and do not fall"});
         option("damping", damping, sim::at_least(0.0), {"rate at which the motion along normals decays: to settle", "1/time"});
+        option("grid_filter", grid_filter, sim::between(0.0, 1.0),
+               {"share of the motion along normals that the shortest waves between particles lose per step; bubbles that fly or "
+                "swing lose next to nothing"});
         option("junction_correction", junction_correction, sim::between(0.0, 1.0),
                {"beta of the cohesion between bubbles: cancels the tension of the blurred line where films meet", "-",
                 "[method sheet 16.4]"});
