@@ -161,8 +161,11 @@ public:
         const Neighbors& other = p.geometry.neighbors.other;
         const std::vector<Vec3>& n = p.geometry.normal;
         parallel_for(diagonal_.size(), [&](std::size_t i) {
+            // At a junction films fold: full stiffness there, none of it forgiven for moving as a whole.
+            const bool free = other.begin(i) == other.end(i);
             double sum = 0.0;
-            for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum -= pairs.same[k] * dot(n[i], n[same.index[k]]);
+            for (std::size_t k = same.begin(i); k < same.end(i); ++k)
+                sum -= pairs.same[k] * (free ? dot(n[i], n[same.index[k]]) : 1.0);
             for (std::size_t k = other.begin(i); k < other.end(i); ++k) sum -= pairs.other[k];
             diagonal_[i] = sum;
         });
