@@ -22,13 +22,14 @@ Patch fit_patch(std::span<const Vec3> position, const Vec3& frame_normal, const 
     const double unit = neighbors.kernel.support_radius;  // coordinates of size 1 keep the matrix well scaled
     std::array<double, kTerms * kTerms> matrix{};
     std::array<double, kTerms> right{};
-    matrix[0] = neighbors.kernel.value(0.0);  // the particle itself
+    matrix[0] = 1.0;  // the particle itself
     for (std::size_t k = neighbors.begin(i); k < neighbors.end(i); ++k) {
         const Vec3 d = (position[neighbors.index[k]] - position[i]) / unit;
         const double u = dot(patch.frame.e1, d), v = dot(patch.frame.e2, d), z = dot(patch.frame.normal, d);
+        const double weight = 1.0 - squared_norm(d);
         const std::array<double, kTerms> term{1.0, u, v, u * u, u * v, v * v};
         for (std::size_t p = 0; p < kTerms; ++p) {
-            const double weighted = neighbors.weight[k] * term[p];
+            const double weighted = weight * term[p];
             for (std::size_t q = 0; q <= p; ++q) matrix[p * kTerms + q] += weighted * term[q];
             right[p] += weighted * z;
         }

@@ -162,7 +162,7 @@ public:
         const std::vector<Vec3>& n = p.geometry.normal;
         parallel_for(diagonal_.size(), [&](std::size_t i) {
             // At a junction films fold: full stiffness there, none of it forgiven for moving as a whole.
-            const bool free = other.begin(i) == other.end(i);
+            const bool free = other.index.empty();
             double sum = 0.0;
             for (std::size_t k = same.begin(i); k < same.end(i); ++k)
                 sum -= pairs.same[k] * (free ? dot(n[i], n[same.index[k]]) : 1.0);
