@@ -23,8 +23,8 @@ TEST(ElasticWave, RunsAtTheSpeedOfMarangoni) {
     constexpr int kMode = 2;
     const double speed = std::sqrt(2.0 * 8.31446261815324 * 298.15 * 1e-7 / (1000.0 * 5e-7));
     const double exact = 2.0 * std::numbers::pi * kRadius / (speed * std::sqrt(kMode * (kMode + 1.0)));
-    const std::string options = "largest_step = " + std::to_string(exact / 200.0) + "\nsteps_per_period = 20.0";
-    auto solver = bubble(1200, options);
+    const std::string options = "largest_step = " + std::to_string(exact / 100.0) + "\nsteps_per_period = 20.0";
+    auto solver = bubble(2562, options);
     test::StateMemory state;
     solver->save(state);
     auto& position = state.reals["fine/position"];

@@ -94,14 +94,26 @@ double MelpSolver::choose_step(double time_limit) const {
     double fastest = 0.0;
     for (const Vec3& u : coarse_.velocity) fastest = std::max(fastest, norm(u));
     for (const Vec3& u : fine_.velocity) fastest = std::max(fastest, norm(u));
-    const double farthest = options_.cfl * spacing_, gravity = norm(input_.films->material.gravity);
+    const double farthest = options_.cfl * spacing_, pull = strongest_pull();
     double dt = options_.largest_step > 0.0 ? options_.largest_step : std::numeric_limits<double>::infinity();
     if (fastest > 0.0) dt = std::min(dt, farthest / fastest);
-    if (gravity > 0.0) dt = std::min(dt, std::sqrt(2.0 * farthest / gravity));
+    if (pull > 0.0) dt = std::min(dt, std::sqrt(2.0 * farthest / pull));
     if (options_.steps_per_period > 0.0) dt = std::min(dt, slowest_period(gas_) / options_.steps_per_period);
     const double left = time_limit - time_;
     if (left <= dt) return left;
     return left < 2.0 * dt ? 0.5 * left : dt;  // no crumb of a step before an output
+}
+
+/// Largest acceleration by gravity and surfactant now [m/s^2]: liquid at rest may have it all before it.
+double MelpSolver::strongest_pull() const {
+    const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, films_.concentration);
+    double strongest = 0.0;
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        const double mass = options_.liquid_density * films_.thickness[i];
+        const Vec3 pull = input_.films->material.gravity - (2.0 * law_.thermal_energy() / mass) * slope[i];
+        strongest = std::max(strongest, norm(pull));
+    }
+    return strongest;
 }
 
 /// Gravity, air and surfactant act along the film; what fine particles will take is in coarse_.velocity then.

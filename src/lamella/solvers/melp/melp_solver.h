@@ -47,6 +47,7 @@ private:
     double slowest_period(const std::vector<Gas>& bubbles) const;
     // The stages of a step, in order.
     double choose_step(double time_limit) const;
+    double strongest_pull() const;
     double theta_of(double dt) const;
     SurfactantStep push_along_film(double dt);
     NormalStep push_along_normals(double dt);

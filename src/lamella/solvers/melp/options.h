@@ -29,7 +29,7 @@ struct StartOptions {
 struct Options {
     int fine_ratio = 16;
     double support_radius = 3.0;
-    double theta = 0.5;
+    double theta = 0.51;
     double steps_per_period = 20.0;
     double cfl = 0.5;
     double largest_step = 0.0;
@@ -58,7 +58,7 @@ struct Options {
         option("support_radius", support_radius, sim::between(2.0, 6.0),
                {"of the kernels, in spacings of the coarse particles", "-", "[method sheet 16]"});
         option("theta", theta, sim::between(0.5, 1.0),
-               {"of the motion along the normals: 0.5 keeps the energy, 1 damps; steps longer than a tenth of the slowest swing of the smallest bubble take 1, and bubbles that touch", "-", "[method sheet 16.2]"});
+               {"of the motion along the normals: 0.5 damps nothing, 0.51 the waves between particles, 1 all; steps longer than a tenth of the slowest swing of the smallest bubble take 1, and bubbles that touch", "-", "[method sheet 16.2]"});
         option("steps_per_period", steps_per_period, sim::at_least(0.0),
                {"of the slowest swing of the smallest bubble; 0: only how far particles move limits the step"});
         option("cfl", cfl, sim::between(0.01, 2.0), {"how far particles move in a step, in spacings"});

@@ -62,13 +62,9 @@ std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, do
 std::vector<Vec3> evening_shift(const Geometry& g, const CoarseParticles& coarse, std::size_t regions, double spacing) {
     const double reach = kReach * spacing * spacing, farthest = kFarthest * spacing;
     std::vector<Vec3> shift = gradient(g, coarse.position, smoothed(g, excess(g, coarse, regions), reach));
-    // A full correction in every step answers each ripple of the film's own motion, and pumps it where layouts have a
-    // defect; below a spread of a tenth it fades out.
-    constexpr double kEven = 0.1;
-    const double gain = std::min(density_spread(g, coarse, regions) / kEven, 1.0);
     double longest = 0.0;
     for (Vec3& d : shift) {
-        d *= -gain * reach;
+        d *= -reach;
         longest = std::max(longest, norm(d));
     }
     const double factor = longest > farthest ? farthest / longest : 1.0;
