@@ -177,10 +177,9 @@ NormalStep MelpSolver::push_along_normals(double dt) {
                                           .theta = theta_of(dt),
                                           .dt = dt,
                                           .tolerance = options_.solver_tolerance});
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < count; ++i)
         coarse_.velocity[i] += (step.velocity[i] - before[i]) * geometry_.normal[i];
-        gas_[static_cast<std::size_t>(coarse_.region[i])].volume += dt * geometry_.area[i] * step.mean[i];
-    }
+    for (std::size_t r = 0; r < gas_.size(); ++r) gas_[r].volume += step.swept[r];
     return step;
 }
 

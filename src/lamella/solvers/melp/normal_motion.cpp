@@ -56,7 +56,7 @@ Pairs pair_strengths(const NormalProblem& p) {
 }
 
 /// Tension, cohesion and gas pressure along the normals. [N]
-std::vector<double> forces(const NormalProblem& p, const Pairs& pairs) {
+std::vector<double> forces(const NormalProblem& p, const Pairs& pairs, const std::vector<double>& gas_area) {
     const Geometry& g = p.geometry;
     const std::vector<Vec3>& x = p.coarse.position;
     std::vector<double> force(g.size());
@@ -66,7 +66,7 @@ std::vector<double> forces(const NormalProblem& p, const Pairs& pairs) {
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) pull += pairs.same[k] * (x[same.index[k]] - x[i]);
         const Neighbors& other = g.neighbors.other;
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) pull += pairs.other[k] * (x[other.index[k]] - x[i]);
-        force[i] = dot(pull, g.normal[i]) + p.gas[region_of(p.coarse, i)].gauge_pressure(p.outside_pressure) * g.area[i];
+        force[i] = dot(pull, g.normal[i]) + p.gas[region_of(p.coarse, i)].gauge_pressure(p.outside_pressure) * gas_area[i];
     });
     return force;
 }
@@ -153,6 +153,20 @@ std::vector<FreeCluster> free_clusters(const NormalProblem& p) {
     return free;
 }
 
+/// The areas that gas pushes on [m^2]. Those of a closed bubble push it nowhere and do not turn it, so that it flies and turns
+/// without a change of volume. Sums over particles know that to a thousandth, but gas at one atmosphere moves a bubble by
+/// what is left.
+std::vector<double> gas_areas(const NormalProblem& p) {
+    std::vector<double> area = p.geometry.area;
+    const std::vector<Vec3> nothing(area.size());
+    std::vector<std::vector<std::size_t>> members(p.gas.size());
+    for (std::size_t i = 0; i < area.size(); ++i) members[region_of(p.coarse, i)].push_back(i);
+    for (std::size_t r = 0; r < members.size(); ++r)
+        if (p.gas[r].closed && !members[r].empty())
+            FreeCluster(p, std::move(members[r])).remove_resultant(area, nothing, p.geometry.area);
+    return area;
+}
+
 /// How forces of tension and cohesion change with velocities along the normals.
 class FilmStiffness {
 public:
@@ -193,9 +207,9 @@ private:
 };
 
 /// sum of a v over each region: how fast its gas grows [m^3/s].
-std::vector<double> growth(const NormalProblem& p, const std::vector<double>& v) {
+std::vector<double> growth(const NormalProblem& p, const std::vector<double>& gas_area, const std::vector<double>& v) {
     std::vector<double> sum(p.gas.size(), 0.0);
-    for (std::size_t i = 0; i < v.size(); ++i) sum[region_of(p.coarse, i)] += p.geometry.area[i] * v[i];
+    for (std::size_t i = 0; i < v.size(); ++i) sum[region_of(p.coarse, i)] += gas_area[i] * v[i];
     return sum;
 }
 
@@ -205,7 +219,8 @@ NormalStep move_along_normals(const NormalProblem& p) {
     const std::size_t count = p.coarse.size();
     const Pairs pairs = pair_strengths(p);
     const std::vector<FreeCluster> free = free_clusters(p);
-    std::vector<double> force = forces(p, pairs);
+    const std::vector<double> gas_area = gas_areas(p);
+    std::vector<double> force = forces(p, pairs, gas_area);
     std::vector<Vec3> beside(p.internal.begin(), p.internal.end());
     for (std::size_t i = 0; p.floating && i < count; ++i) beside[i] += p.external[i];
     for (const FreeCluster& cluster : free) cluster.remove_resultant(force, beside, p.geometry.area);
@@ -217,7 +232,7 @@ NormalStep move_along_normals(const NormalProblem& p) {
         gas[r] = p.gas[r].closed ? p.dt * p.dt * p.gas[r].amount / (p.gas[r].volume * p.gas[r].volume) : 0.0;
     std::vector<double> inertia(count), given(count), right(count), scale(count);
     parallel_for(count, [&](std::size_t i) {
-        const double a = p.geometry.area[i];
+        const double a = gas_area[i];
         inertia[i] = p.mass[i] * (1.0 + p.dt * p.damping);
         given[i] = p.mass[i] * p.velocity[i] + p.dt * (force[i] + dot(p.external[i], p.geometry.normal[i]));
         right[i] = given[i] + mixed * stiffness.apply(p.velocity, i);
@@ -225,10 +240,10 @@ NormalStep move_along_normals(const NormalProblem& p) {
     });
     const auto apply = [&](const std::vector<double>& v, std::vector<double>& y) {
         y.resize(count);
-        const std::vector<double> grown = growth(p, v);
+        const std::vector<double> grown = growth(p, gas_area, v);
         parallel_for(count, [&](std::size_t i) {
             const std::size_t r = region_of(p.coarse, i);
-            y[i] = inertia[i] * v[i] - implicit * stiffness.apply(v, i) + gas[r] * grown[r] * p.geometry.area[i];
+            y[i] = inertia[i] * v[i] - implicit * stiffness.apply(v, i) + gas[r] * grown[r] * gas_area[i];
         });
     };
     NormalStep step;
@@ -246,6 +261,8 @@ NormalStep move_along_normals(const NormalProblem& p) {
         step.velocity[i] = (given[i] + added[i]) / inertia[i];
         step.mean[i] = p.theta * step.velocity[i] + (1.0 - p.theta) * p.velocity[i];
     }
+    step.swept = growth(p, gas_area, step.mean);
+    for (double& volume : step.swept) volume *= p.dt;
     return step;
 }
 

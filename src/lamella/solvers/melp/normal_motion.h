@@ -31,6 +31,7 @@ struct NormalProblem {
 struct NormalStep {
     std::vector<double> velocity;  ///< along the normals, at the end of the step [m/s]
     std::vector<double> mean;      ///< what the film moves with during the step [m/s]
+    std::vector<double> swept;     ///< by the films of each region: how much its gas has grown [m^3]
     linalg::IterativeSolution solution;
 };
 
@@ -42,7 +43,7 @@ struct NormalStep {
 ///
 ///   (J_film v)_i = sum_j c_ij (v_j - n_i . n_j v_i),   c_ij = (tau_i + tau_j) / 2 a_i a_j omega_ij,
 ///
-/// and that of each gas, -(p / V) a a^T, always fully implicit: the breathing of bubbles is far faster than any step.
+/// and that of each gas, -(p / V) b b^T with the areas b that it pushes on, always fully implicit: the breathing of bubbles is far faster than any step.
 /// The cosine lets a film move as a whole without resistance: v = U . n changes no force where particles are evenly
 /// spread. It stands for the |kappa|^2 of the sheet, sum c (1 - n_i . n_j) = tau a |kappa|^2 in the limit; with curvatures
 /// from patches, right to half a percent, a flying bubble gained 0.017 % of its speed per millisecond.
