@@ -5,6 +5,8 @@
 
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/start.h"
+#include "lamella/solvers/melp/surface.h"
 
 #include <gtest/gtest.h>
 
@@ -129,6 +131,34 @@ TEST(MelpSolver, ReportsTheSameNamesEveryTime) {
     EXPECT_EQ(frame.points.size(), solver->coarse().size() + solver->fine().size());
     for (const sim::Field& field : frame.points.fields)
         EXPECT_EQ(field.values.size(), frame.points.size() * static_cast<std::size_t>(field.components)) << field.name;
+}
+
+TEST(SurfaceTriangles, CloseABubbleInWhileItSwingsAndFlies) {
+    auto solver = bubble(800, "fine_ratio = 0\nstart.mode = 3\nstart.mode_amplitude = 0.1\n");
+    for (int k = 0; k < 4; ++k) {
+        const sim::Surface surface = solver->frame().surface;
+        EXPECT_EQ(open_edges(surface.triangles), 0U) << k;
+        EXPECT_EQ(surface.triangles.size(), 2 * solver->coarse().size() - 4) << k;  // Euler's formula for a sphere
+        double volume = 0.0;
+        for (const auto& t : surface.triangles)
+            volume += dot(surface.position[t[0]], cross(surface.position[t[1]], surface.position[t[2]])) / 6.0;
+        EXPECT_NEAR(volume / scalar(*solver, "particle_volume"), 1.0, 0.02) << k;  // a polyhedron inside the sphere
+        advance(*solver, 15);
+    }
+}
+
+TEST(SurfaceTriangles, LeaveAHoleInAFilmOpen) {
+    CoarseParticles coarse;
+    for (const Vec3& n : fibonacci_sphere(600))
+        if (n[0] < 0.8) {
+            coarse.position.push_back(n);
+            coarse.frame_normal.push_back(n);
+        }
+    coarse.velocity.resize(coarse.size());
+    coarse.region.resize(coarse.size());
+    const Triangles triangles = surface_triangles(coarse, geometry_of(coarse, 0.45));
+    EXPECT_GT(open_edges(triangles), 10U);  // around the hole
+    EXPECT_LT(open_edges(triangles), 60U);
 }
 
 }  // namespace

@@ -94,8 +94,9 @@ TEST(Transfer, KeepsTheAngularMomentumOfAFlatFilmThatTurns) {
         sent += gathered.liquid_volume[e] * cross(coarse.position[e] - center, velocity[e])[2];
         back += cross(coarse.position[e] - center, gathered.momentum[e])[2];
     }
-    // The floor of the moments takes 1e-4 r^2 / (spread of the kernel, about r^2 / 20) of the affine part.
-    EXPECT_NEAR(back / sent, 1.0, 1e-5);
+    // The floor of the moments takes 1e-4 r^2 / (spread of the kernel, about r^2 / 20), 0.2 %, of the affine part, which is
+    // itself the kernel's spread over that of the film, 1 %, of the whole.
+    EXPECT_NEAR(back / sent, 1.0, 5e-5);
 }
 
 TEST(Transfer, PutsFineParticlesOntoTheSphereThatCoarseOnesLieOn) {

@@ -60,6 +60,8 @@ private:
     void follow_particle_volumes(double dt);
 
     std::vector<double> masses() const;
+    Vec3 velocity_of(std::size_t i) const;
+    sim::Surface surface() const;
     std::vector<Vec3> region_velocities() const;
     void even_out_layout();
     std::string fault_of_step() const;

@@ -1,9 +1,9 @@
 // What can be seen of films made of particles.
 
-#include "lamella/film/tension.h"
 #include "lamella/solvers/melp/melp_solver.h"
 #include "lamella/solvers/melp/redistribution.h"
 #include "lamella/solvers/melp/start.h"
+#include "lamella/solvers/melp/surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,11 +35,43 @@ void append(std::vector<double>& to, const Vec3& x) { to.insert(to.end(), x.v, x
 
 }  // namespace
 
+/// The films as triangles between coarse particles, each region's on its own.
+sim::Surface MelpSolver::surface() const {
+    sim::Surface surface;
+    surface.position = coarse_.position;
+    surface.triangles = surface_triangles(coarse_, geometry_);
+    for (const auto& t : surface.triangles) surface.regions.push_back({gas_[static_cast<std::size_t>(coarse_.region[t[0]])].region, 0});
+    sim::Field velocity{"velocity", "m/s", 3, false, {}};
+    for (std::size_t i = 0; i < coarse_.size(); ++i) append(velocity.values, velocity_of(i));
+    surface.vertex_fields = {{"thickness", "m", 1, false, films_.seen_thickness},
+                             {"surfactant_concentration", "mol/m^2", 1, false, films_.concentration},
+                             {"curvature", "1/m", 1, false, geometry_.curvature},
+                             std::move(velocity)};
+    const std::size_t regions = input_.films->mesh.regions.size();
+    sim::Field closed{"closed", "-", 1, true, std::vector<double>(regions, 0.0)};
+    sim::Field target{"target_volume", "m^3", 1, false, std::vector<double>(regions, 0.0)};
+    sim::Field pressure{"pressure", "Pa", 1, false, std::vector<double>(regions, 0.0)};
+    for (const Gas& gas : gas_) {
+        const auto r = static_cast<std::size_t>(gas.region);
+        closed.values[r] = 1.0;
+        target.values[r] = input_.films->mesh.regions[static_cast<mesh::RegionId>(r)].target_volume;
+        pressure.values[r] = gas.gauge_pressure(options_.outside_pressure);
+    }
+    surface.region_fields = {std::move(closed), std::move(target), std::move(pressure)};
+    return surface;
+}
+
+Vec3 MelpSolver::velocity_of(std::size_t i) const {
+    const Vec3& n = geometry_.normal[i];
+    return films_.along[i] + dot(coarse_.velocity[i], n) * n;
+}
+
 sim::Frame MelpSolver::frame() const {
     sim::Frame frame;
     frame.solver = "melp";
     frame.time = time_;
     frame.step = steps_;
+    frame.surface = surface();
     frame.points.position = coarse_.position;
     frame.points.position.insert(frame.points.position.end(), fine_.position.begin(), fine_.position.end());
     sim::Field fine{"fine", "-", 1, true, {}}, region{"region", "-", 1, true, {}};
@@ -48,9 +80,8 @@ sim::Frame MelpSolver::frame() const {
     fine.values.assign(coarse_.size(), 0.0);
     fine.values.resize(coarse_.size() + fine_.size(), 1.0);
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
-        const Vec3& n = geometry_.normal[i];
-        append(velocity.values, films_.along[i] + dot(coarse_.velocity[i], n) * n);
-        append(normal.values, n);
+        append(velocity.values, velocity_of(i));
+        append(normal.values, geometry_.normal[i]);
         region.values.push_back(gas_[static_cast<std::size_t>(coarse_.region[i])].region);
     }
     thickness.values.insert(thickness.values.end(), fine_.thickness.begin(), fine_.thickness.end());
