@@ -1,0 +1,124 @@
+// What a run is continued from: the particles and the gas. All else follows from these.
+
+#include "lamella/core/error.h"
+#include "lamella/solvers/melp/melp_solver.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace lamella::melp {
+namespace {
+
+constexpr std::int64_t kMostParticles = std::int64_t{1} << 31;
+
+void append(std::vector<double>& to, double value) { to.push_back(value); }
+void append(std::vector<double>& to, const Vec3& value) { to.insert(to.end(), value.v, value.v + 3); }
+void append(std::vector<double>& to, const Tensor& value) {
+    for (const Vec3& row : value) append(to, row);
+}
+
+void take(const double*& from, double& value) { value = *from++; }
+void take(const double*& from, Vec3& value) {
+    for (double& component : value.v) component = *from++;
+}
+void take(const double*& from, Tensor& value) {
+    for (Vec3& row : value) take(from, row);
+}
+
+template <class Particles>
+void save_columns(sim::StateWriter& out, const std::string& group, const Particles& particles) {
+    out.write_value(group + "/count", static_cast<std::int64_t>(particles.size()));
+    Particles::for_each_column(particles, [&]<class T>(const char* name, const std::vector<T>& column) {
+        if constexpr (std::is_same_v<T, std::int32_t>) {
+            out.write(group + "/" + name, std::span<const std::int32_t>(column));
+        } else {
+            std::vector<double> values;
+            values.reserve(column.size() * sizeof(T) / sizeof(double));
+            for (const T& value : column) append(values, value);
+            out.write(group + "/" + name, std::span<const double>(values));
+        }
+    });
+}
+
+template <class Particles>
+Particles load_columns(sim::StateReader& in, const std::string& group) {
+    const std::int64_t stored = in.read_integer(group + "/count");
+    if (stored < 0 || stored > kMostParticles)
+        throw InputError(fmt::format("{}/count = {} is no number of particles", group, stored));
+    const auto count = static_cast<std::size_t>(stored);
+    Particles particles;
+    Particles::for_each_column(particles, [&]<class T>(const char* name, std::vector<T>& column) {
+        if constexpr (std::is_same_v<T, std::int32_t>) {
+            in.read(group + "/" + name, count, column);
+        } else {
+            std::vector<double> values;
+            in.read(group + "/" + name, count * sizeof(T) / sizeof(double), values);
+            column.resize(count);
+            const double* from = values.data();
+            for (T& value : column) take(from, value);
+        }
+    });
+    return particles;
+}
+
+void require_regions(const std::vector<std::int32_t>& region, std::size_t regions, const char* group) {
+    for (const std::int32_t r : region)
+        if (r < 0 || static_cast<std::size_t>(r) >= regions)
+            throw InputError(fmt::format("{}/region = {} is none of {} regions", group, r, regions));
+}
+
+}  // namespace
+
+void MelpSolver::save(sim::StateWriter& out) const {
+    save_columns(out, "coarse", coarse_);
+    save_columns(out, "fine", fine_);
+    out.write_value("regions", static_cast<std::int64_t>(gas_.size()));
+    std::vector<std::int32_t> number;
+    std::vector<double> gas, even;
+    for (const Gas& g : gas_) {
+        number.push_back(g.region);
+        gas.insert(gas.end(), {g.amount, g.volume, g.calibration});
+    }
+    for (const EvenFilm& film : even_) even.insert(even.end(), {film.liquid_volume, film.surfactant});
+    out.write("region/number", std::span<const std::int32_t>(number));
+    out.write("region/gas", std::span<const double>(gas));
+    out.write("region/even_film", std::span<const double>(even));
+    out.write_value("spacing", spacing_);
+    out.write_value("time", time_);
+    out.write_value("steps", steps_);
+    out.write_value("step", step_);
+    out.write_value("initial_liquid", initial_liquid_);
+}
+
+void MelpSolver::load(sim::StateReader& in) {
+    coarse_ = load_columns<CoarseParticles>(in, "coarse");
+    fine_ = load_columns<FineParticles>(in, "fine");
+    const std::int64_t stored = in.read_integer("regions");
+    if (stored < 1 || stored > static_cast<std::int64_t>(coarse_.size()))
+        throw InputError(fmt::format("regions = {} is no number of regions of {} particles", stored, coarse_.size()));
+    const auto regions = static_cast<std::size_t>(stored);
+    require_regions(coarse_.region, regions, "coarse");
+    require_regions(fine_.region, regions, "fine");
+    std::vector<std::int32_t> number;
+    std::vector<double> gas, even;
+    in.read("region/number", regions, number);
+    in.read("region/gas", 3 * regions, gas);
+    in.read("region/even_film", 2 * regions, even);
+    gas_.assign(regions, {});
+    even_.assign(regions, {});
+    for (std::size_t r = 0; r < regions; ++r) {
+        gas_[r] = {.region = number[r], .amount = gas[3 * r], .volume = gas[3 * r + 1], .calibration = gas[3 * r + 2]};
+        even_[r] = {even[2 * r], even[2 * r + 1]};
+    }
+    spacing_ = in.read_double("spacing");
+    if (!(spacing_ > 0.0)) throw InputError(fmt::format("spacing = {} m is no distance of particles", spacing_));
+    time_ = in.read_double("time");
+    steps_ = in.read_integer("steps");
+    step_ = in.read_double("step");
+    initial_liquid_ = in.read_double("initial_liquid");
+    update_shape();
+    update_liquid();
+}
+
+}  // namespace lamella::melp

@@ -1,0 +1,79 @@
+#include "lamella/solvers/melp/films.h"
+
+#include "lamella/linalg/small_cholesky.h"
+
+#include <algorithm>
+#include <array>
+
+namespace lamella::melp {
+namespace {
+
+// Where hardly a fine particle reaches, a film of this share of the mean thickness keeps accelerations finite. It is
+// not liquid: no total counts it.
+constexpr double kThinnest = 0.05;
+
+std::vector<double> region_areas(const Geometry& geometry, const CoarseParticles& coarse, std::size_t regions) {
+    std::vector<double> area(regions, 0.0);
+    for (std::size_t e = 0; e < coarse.size(); ++e) area[static_cast<std::size_t>(coarse.region[e])] += geometry.area[e];
+    return area;
+}
+
+/// The uniform velocity of each region that has the momentum of its motion along the normals: the U for which
+/// sum a (u . n) n = (sum a n n^T) U. Films without a flow of their own fly with it.
+std::vector<Vec3> region_drifts(const Geometry& geometry, const CoarseParticles& coarse, std::size_t regions) {
+    std::vector<std::array<double, 9>> matrix(regions);
+    std::vector<std::array<double, 3>> right(regions);
+    for (std::size_t e = 0; e < coarse.size(); ++e) {
+        const auto r = static_cast<std::size_t>(coarse.region[e]);
+        const Vec3& n = geometry.normal[e];
+        for (std::size_t k = 0; k < 3; ++k) {
+            right[r][k] += geometry.area[e] * dot(coarse.velocity[e], n) * n[k];
+            for (std::size_t m = 0; m < 3; ++m) matrix[r][3 * k + m] += geometry.area[e] * n[k] * n[m];
+        }
+    }
+    std::vector<Vec3> drift(regions);
+    for (std::size_t r = 0; r < regions; ++r)
+        if (linalg::solve_positive<3>(matrix[r], right[r])) drift[r] = {{right[r][0], right[r][1], right[r][2]}};
+    return drift;
+}
+
+}  // namespace
+
+Films films_of(const Geometry& geometry,
+               const CoarseParticles& coarse,
+               const Gathered& gathered,
+               const std::vector<EvenFilm>& even,
+               const film::SurfactantLaw& law) {
+    const std::size_t count = coarse.size();
+    const std::vector<double> area = region_areas(geometry, coarse, even.size());
+    std::vector<double> liquid(even.size(), 0.0);
+    for (std::size_t e = 0; e < count; ++e) liquid[static_cast<std::size_t>(coarse.region[e])] += gathered.liquid_volume[e];
+    const std::vector<Vec3> drift = region_drifts(geometry, coarse, even.size());
+    Films films;
+    films.liquid_volume.resize(count);
+    films.thickness.resize(count);
+    films.seen_thickness.resize(count);
+    films.concentration.resize(count);
+    films.tension.resize(count);
+    films.along.resize(count);
+    for (std::size_t e = 0; e < count; ++e) {
+        const auto r = static_cast<std::size_t>(coarse.region[e]);
+        const double a = geometry.area[e];
+        const bool evenly = even[r].liquid_volume > 0.0;
+        const double share = evenly ? a / area[r] : 0.0;
+        const double volume = evenly ? share * even[r].liquid_volume : gathered.liquid_volume[e];
+        const double thinnest = kThinnest * (evenly ? even[r].liquid_volume : liquid[r]) / area[r];
+        films.liquid_volume[e] = std::max(volume, thinnest * a);
+        films.thickness[e] = films.liquid_volume[e] / a;
+        films.concentration[e] = (evenly ? share * even[r].surfactant : gathered.surfactant[e]) / a;
+        films.tension[e] = law.tension(films.concentration[e]);
+        films.seen_thickness[e] = volume > 0.0 && !evenly ? gathered.seen_volume[e] / volume : films.thickness[e];
+        Vec3 u;
+        if (evenly) u = drift[r];
+        else if (volume > 0.0) u = gathered.momentum[e] / volume;
+        films.along[e] = u - dot(u, geometry.normal[e]) * geometry.normal[e];
+    }
+    return films;
+}
+
+}  // namespace lamella::melp

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "lamella/film/surfactant.h"
+#include "lamella/solvers/melp/geometry.h"
+#include "lamella/solvers/melp/transfer.h"
+
+#include <vector>
+
+namespace lamella::melp {
+
+/// Liquid and surfactant of a region whose films have no fine particles: spread evenly.
+struct EvenFilm {
+    double liquid_volume = 0.0;  ///< of the whole region [m^3]; 0: the region has fine particles
+    double surfactant = 0.0;     ///< [mol]
+};
+
+/// The film at coarse particles as the fine ones make it; one entry per coarse particle.
+struct Films {
+    std::vector<double> liquid_volume;   ///< [m^3]
+    std::vector<double> thickness;       ///< [m]
+    std::vector<double> seen_thickness;  ///< the fine particles' own, averaged [m]
+    std::vector<double> concentration;   ///< of surfactant, per interface [mol/m^2]
+    std::vector<double> tension;         ///< of one interface [N/m]
+    std::vector<Vec3> along;             ///< velocity along the film [m/s]
+
+    std::size_t size() const { return thickness.size(); }
+};
+
+/// @param regions  number of regions   @param even  per region
+Films films_of(const Geometry& geometry,
+               const CoarseParticles& coarse,
+               const Gathered& gathered,
+               const std::vector<EvenFilm>& even,
+               const film::SurfactantLaw& law);
+
+}  // namespace lamella::melp

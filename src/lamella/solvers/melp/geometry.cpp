@@ -1,0 +1,112 @@
+#include "lamella/solvers/melp/geometry.h"
+
+#include "lamella/core/parallel.h"
+#include "lamella/linalg/small_cholesky.h"
+
+#include <cmath>
+
+namespace lamella::melp {
+
+Frame frame_of(const Vec3& n) {
+    // The branch keeps the divisor away from zero.
+    const double sign = n[2] < 0.0 ? -1.0 : 1.0;
+    const double a = -1.0 / (sign + n[2]);
+    const double b = n[0] * n[1] * a;
+    return {{{1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]}}, {{b, sign + n[1] * n[1] * a, -n[1]}}, n};
+}
+
+Patch fit_patch(std::span<const Vec3> position, const Vec3& frame_normal, const Neighbors& neighbors, std::size_t i) {
+    Patch patch{position[i], frame_of(frame_normal)};
+    constexpr std::size_t kTerms = 6;
+    if (neighbors.end(i) - neighbors.begin(i) + 1 < kTerms) return patch;
+    const double unit = neighbors.kernel.support_radius;  // coordinates of size 1 keep the matrix well scaled
+    std::array<double, kTerms * kTerms> matrix{};
+    std::array<double, kTerms> right{};
+    matrix[0] = 1.0;  // the particle itself
+    for (std::size_t k = neighbors.begin(i); k < neighbors.end(i); ++k) {
+        const Vec3 d = (position[neighbors.index[k]] - position[i]) / unit;
+        const double u = dot(patch.frame.e1, d), v = dot(patch.frame.e2, d), z = dot(patch.frame.normal, d);
+        const double weight = 1.0 - squared_norm(d);
+        const std::array<double, kTerms> term{1.0, u, v, u * u, u * v, v * v};
+        for (std::size_t p = 0; p < kTerms; ++p) {
+            const double weighted = weight * term[p];
+            for (std::size_t q = 0; q <= p; ++q) matrix[p * kTerms + q] += weighted * term[q];
+            right[p] += weighted * z;
+        }
+    }
+    if (linalg::solve_positive<kTerms>(matrix, right))
+        patch.c = {right[0] * unit, right[1], right[2], right[3] / unit, right[4] / unit, right[5] / unit};
+    return patch;
+}
+
+PatchShape shape_of(const Patch& patch) {
+    const auto& c = patch.c;
+    const double zu = c[1], zv = c[2], zuu = 2.0 * c[3], zuv = c[4], zvv = 2.0 * c[5];
+    const double g = 1.0 + zu * zu + zv * zv;
+    const double sum = ((1.0 + zv * zv) * zuu - 2.0 * zu * zv * zuv + (1.0 + zu * zu) * zvv) / (g * std::sqrt(g));
+    const Vec3 normal = patch.frame.normal - zu * patch.frame.e1 - zv * patch.frame.e2;
+    return {normal / norm(normal), sum};
+}
+
+namespace {
+
+/// (sum_j a_j |grad W_ij| / |t| t t^T)^-1 in the tangent plane: what plain gradients of linear fields have to be
+/// multiplied with. [method sheet 3 R]
+Tensor gradient_map(std::span<const Vec3> position,
+                    std::span<const double> area,
+                    const Vec3& normal,
+                    const Neighbors& neighbors,
+                    std::size_t i) {
+    const Frame frame = frame_of(normal);
+    double uu = 0.0, uv = 0.0, vv = 0.0;
+    for (std::size_t k = neighbors.begin(i); k < neighbors.end(i); ++k) {
+        const std::uint32_t j = neighbors.index[k];
+        const Vec3 d = position[j] - position[i];
+        const double u = dot(frame.e1, d), v = dot(frame.e2, d), w = 0.5 * area[j] * neighbors.laplacian[k];
+        uu += w * u * u;
+        uv += w * u * v;
+        vv += w * v * v;
+    }
+    // In the middle of a film this is the unit matrix. Neighbors on a line leave one direction unseen: no gradient then.
+    constexpr double kUnseen = 1e-3;
+    const double determinant = uu * vv - uv * uv;
+    if (!(determinant > kUnseen * (uu + vv) * (uu + vv))) return {};
+    const double iuu = vv / determinant, iuv = -uv / determinant, ivv = uu / determinant;
+    const Vec3 row1 = iuu * frame.e1 + iuv * frame.e2, row2 = iuv * frame.e1 + ivv * frame.e2;
+    Tensor map;
+    for (std::size_t k = 0; k < 3; ++k) map[k] = frame.e1[k] * row1 + frame.e2[k] * row2;
+    return map;
+}
+
+}  // namespace
+
+Geometry geometry_of(const CoarseParticles& coarse, double support_radius) {
+    Geometry g;
+    g.neighbors = find_neighbors(coarse.position, coarse.frame_normal, coarse.region, support_radius);
+    const Neighbors& same = g.neighbors.same;
+    const std::size_t count = coarse.size();
+    g.patch.resize(count);
+    g.normal.resize(count);
+    g.curvature.resize(count);
+    g.area.resize(count);
+    g.gradient_map.resize(count);
+    constexpr std::size_t kBlock = 256;
+    parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            g.patch[i] = fit_patch(coarse.position, coarse.frame_normal[i], same, i);
+            const PatchShape shape = shape_of(g.patch[i]);
+            g.normal[i] = shape.normal;
+            g.curvature[i] = shape.curvature;
+            double density = same.kernel.value(0.0);
+            for (std::size_t k = same.begin(i); k < same.end(i); ++k) density += same.weight[k];
+            g.area[i] = 1.0 / density;
+        }
+    });
+    parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            g.gradient_map[i] = gradient_map(coarse.position, g.area, g.normal[i], same, i);
+    });
+    return g;
+}
+
+}  // namespace lamella::melp

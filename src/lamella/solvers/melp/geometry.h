@@ -1,0 +1,64 @@
+#pragma once
+
+#include "lamella/core/vec.h"
+#include "lamella/solvers/melp/neighbors.h"
+#include "lamella/solvers/melp/particles.h"
+#include "lamella/solvers/melp/tensor.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace lamella::melp {
+
+/// A tangent frame: right-handed, orthonormal.
+struct Frame {
+    Vec3 e1, e2, normal;
+};
+/// Some frame of a unit normal; it depends on nothing else.
+Frame frame_of(const Vec3& normal);
+
+/// The film around a coarse particle, a quadratic over the tangent plane of its frame:
+///
+///   z(u, v) = c0 + c1 u + c2 v + c3 u^2 + c4 u v + c5 v^2,   (u, v, z) = (e1, e2, normal) . (x - origin)
+struct Patch {
+    Vec3 origin;  ///< the particle [m]
+    Frame frame;
+    std::array<double, 6> c{};  ///< [m], [-], [1/m]
+
+    double height(double u, double v) const { return c[0] + u * (c[1] + c[3] * u + c[4] * v) + v * (c[2] + c[5] * v); }
+    /// How far `x` stands above the patch, along the frame's normal [m].
+    double above(const Vec3& x) const {
+        const Vec3 d = x - origin;
+        return dot(frame.normal, d) - height(dot(frame.e1, d), dot(frame.e2, d));
+    }
+};
+
+/// The least squares fit of a patch to a particle and its neighbors of the same region, weighted with the kernel.
+/// Where they are too few for a quadratic (less than six, or on a line) the patch is flat.
+Patch fit_patch(std::span<const Vec3> position, const Vec3& frame_normal, const Neighbors& neighbors, std::size_t i);
+
+/// Normal and curvature of a patch at its origin. A sphere whose normal points outward has curvature -2 / R: this is
+/// the K of [method sheet 1], the Laplacian of the height.
+struct PatchShape {
+    Vec3 normal;
+    double curvature = 0.0;  ///< kappa_1 + kappa_2 [1/m]
+};
+PatchShape shape_of(const Patch& patch);
+
+/// What follows from where the coarse particles are.
+struct Geometry {
+    NeighborLists neighbors;
+    std::vector<Patch> patch;
+    std::vector<Vec3> normal;
+    std::vector<double> curvature;     ///< measured, for reports; no force comes from it [1/m]
+    std::vector<double> area;          ///< 1 / sum W, the particle itself counted [m^2]
+    std::vector<Tensor> gradient_map;  ///< makes gradients of linear fields exact, and tangent: see gradient()
+
+    std::size_t size() const { return normal.size(); }
+};
+
+/// Neighbors, patches with normals whose sign follows the frame normals, areas. [method sheet 4, 16.1]
+Geometry geometry_of(const CoarseParticles& coarse, double support_radius);
+
+}  // namespace lamella::melp

@@ -1,0 +1,292 @@
+#include "lamella/solvers/melp/melp_solver.h"
+
+#include "lamella/core/error.h"
+#include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/operators.h"
+#include "lamella/solvers/melp/redistribution.h"
+#include "lamella/solvers/melp/start.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+
+namespace lamella::melp {
+
+MelpSolver::MelpSolver(const Options& options, const sim::SolverInput& input) : options_(options), input_(input) {
+    if (!input_.films) throw InputError("the scene has no films; add a [[bubble]]");
+    law_ = {.reference_tension = input_.films->material.surface_tension,
+            .reference_concentration = options_.surfactant_concentration,
+            .temperature = options_.temperature};
+    if (law_.tension(2.0 * options_.surfactant_concentration) <= 0.0)
+        throw InputError(fmt::format("melp.surfactant_concentration = {:.3g} mol/m^2 takes R T * that = {:.3g} N/m from the tension, "
+                                     "as much as material.surface_tension = {:.3g} N/m has",
+                                     options_.surfactant_concentration,
+                                     law_.thermal_energy() * options_.surfactant_concentration, law_.reference_tension));
+    refuse_unknown_films(*input_.films);
+}
+
+void MelpSolver::start(const sim::StartContext&) {
+    Start start = start_particles(*input_.films, options_, input_.seed);
+    coarse_ = std::move(start.coarse);
+    fine_ = std::move(start.fine);
+    gas_ = std::move(start.gas);
+    even_ = std::move(start.even);
+    spacing_ = start.spacing;
+    sort_fine_particles(fine_, spacing_);
+    update_shape();
+    even_out_layout();
+    const std::vector<double> volume = particle_volumes(coarse_, geometry_, gas_);
+    for (std::size_t r = 0; r < gas_.size(); ++r) gas_[r].calibration = gas_[r].volume / volume[r];
+    update_liquid();
+    transfer_->project(geometry_.patch, geometry_.normal, fine_);
+    update_liquid();
+    for (const double v : fine_.liquid_volume) initial_liquid_ += v;
+    for (const EvenFilm& film : even_) initial_liquid_ += film.liquid_volume;
+}
+
+/// Vertices of a mesh are no even layout: the first passes of redistribution are made before anything moves.
+void MelpSolver::even_out_layout() {
+    if (!options_.redistribution) return;
+    constexpr double kEven = 0.15;
+    constexpr int kMostPasses = 60;
+    for (int pass = 0; pass < kMostPasses && density_spread(geometry_, coarse_, gas_.size()) > kEven; ++pass) {
+        const std::vector<Vec3> shift = evening_shift(geometry_, coarse_, gas_.size(), spacing_);
+        for (std::size_t i = 0; i < coarse_.size(); ++i) coarse_.position[i] += along_patch(geometry_.patch[i], shift[i]);
+        update_shape();
+    }
+}
+
+sim::StepReport MelpSolver::advance(double time_limit) {
+    const double dt = choose_step(time_limit);
+    const std::vector<Vec3> velocity_before = coarse_.velocity;
+    const std::vector<Gas> gas_before = gas_;
+    const SurfactantStep surfactant = push_along_film(dt);
+    const NormalStep normal = push_along_normals(dt);
+    filter_short_waves();
+    if (const std::string fault = fault_of_step(); !fault.empty()) {
+        coarse_.velocity = velocity_before;
+        gas_ = gas_before;
+        throw NumericalError(fmt::format("melp: step {} of {:.3g} s from time {:.6g} s: {}; a smaller melp.cfl or theta = 1 may help",
+                                         steps_ + 1, dt, time_, fault));
+    }
+    give_to_fine(dt);
+    move_coarse(dt, normal);
+    update_shape();
+    move_fine(dt);
+    update_liquid();
+    follow_particle_volumes(dt);
+    time_ = dt >= time_limit - time_ ? time_limit : time_ + dt;
+    step_ = dt;
+    ++steps_;
+    return {.step = dt,
+            .evaluations = 1,
+            .iterations = surfactant.solution.iterations + normal.solution.iterations,
+            .residual = std::max(surfactant.solution.residual, normal.solution.residual)};
+}
+
+/// Particles move by less than cfl spacings, and swings and falls are resolved.
+double MelpSolver::choose_step(double time_limit) const {
+    double fastest = 0.0;
+    for (const Vec3& u : coarse_.velocity) fastest = std::max(fastest, norm(u));
+    for (const Vec3& u : fine_.velocity) fastest = std::max(fastest, norm(u));
+    const double farthest = options_.cfl * spacing_, pull = strongest_pull();
+    double dt = options_.largest_step > 0.0 ? options_.largest_step : std::numeric_limits<double>::infinity();
+    if (fastest > 0.0) dt = std::min(dt, farthest / fastest);
+    if (pull > 0.0) dt = std::min(dt, std::sqrt(2.0 * farthest / pull));
+    if (options_.steps_per_period > 0.0) dt = std::min(dt, slowest_period(gas_) / options_.steps_per_period);
+    const double left = time_limit - time_;
+    if (left <= dt) return left;
+    return left < 2.0 * dt ? 0.5 * left : dt;  // no crumb of a step before an output
+}
+
+/// Largest acceleration by gravity and surfactant now [m/s^2]: liquid at rest may have it all before it.
+double MelpSolver::strongest_pull() const {
+    const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, films_.concentration);
+    double strongest = 0.0;
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        const double mass = options_.liquid_density * films_.thickness[i];
+        const Vec3 pull = input_.films->material.gravity - (2.0 * law_.thermal_energy() / mass) * slope[i];
+        strongest = std::max(strongest, norm(pull));
+    }
+    return strongest;
+}
+
+/// Gravity, air and surfactant act along the film; what fine particles will take is in coarse_.velocity then.
+SurfactantStep MelpSolver::push_along_film(double dt) {
+    const std::size_t count = coarse_.size();
+    const double density = options_.liquid_density;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3& n = geometry_.normal[i];
+        const double drag = dt * options_.air_drag / (density * films_.thickness[i]);
+        Vec3 u = films_.along[i] + dt * input_.films->material.gravity + drag * options_.wind;
+        u -= dot(u, n) * n;
+        coarse_.velocity[i] = u / (1.0 + drag) + dot(coarse_.velocity[i], n) * n;
+    }
+    marangoni_.assign(count, {});
+    if (options_.surfactant_concentration == 0.0) return {};
+    SurfactantStep step = solve_surfactant(geometry_, coarse_.position, films_, coarse_.velocity, law_, density, dt,
+                                           options_.solver_tolerance);
+    const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, step.concentration);
+    for (std::size_t i = 0; i < count; ++i) {
+        marangoni_[i] = (-2.0 * law_.thermal_energy() * geometry_.area[i]) * slope[i];
+        coarse_.velocity[i] += (dt / (density * films_.liquid_volume[i])) * marangoni_[i];
+    }
+    return step;
+}
+
+std::vector<double> MelpSolver::masses() const {
+    std::vector<double> mass(coarse_.size());
+    for (std::size_t i = 0; i < mass.size(); ++i) {
+        const double radius = std::cbrt(0.75 * gas_[static_cast<std::size_t>(coarse_.region[i])].volume / std::numbers::pi);
+        mass[i] = options_.liquid_density * films_.liquid_volume[i] +
+                  options_.air_mass * input_.films->material.air_density * radius * geometry_.area[i];
+    }
+    return mass;
+}
+
+/// Tension, gas, weight and wind move the film along its normals; gases note what the film sweeps.
+NormalStep MelpSolver::push_along_normals(double dt) {
+    const std::size_t count = coarse_.size();
+    std::vector<double> before(count);
+    std::vector<Vec3> external(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3& n = geometry_.normal[i];
+        before[i] = dot(coarse_.velocity[i], n);
+        external[i] = (options_.liquid_density * films_.liquid_volume[i]) * input_.films->material.gravity;
+        if (dot(n, options_.wind) < 0.0)  // the side that the wind blows on
+            external[i] += (options_.air_drag * geometry_.area[i]) * (options_.wind - coarse_.velocity[i]);
+    }
+    const std::vector<double> mass = masses();
+    NormalStep step = move_along_normals({.coarse = coarse_,
+                                          .geometry = geometry_,
+                                          .gas = gas_,
+                                          .outside_pressure = options_.outside_pressure,
+                                          .mass = mass,
+                                          .interface_tension = films_.tension,
+                                          .velocity = before,
+                                          .internal = marangoni_,
+                                          .external = external,
+                                          .floating = options_.floating,
+                                          .junction_correction = options_.junction_correction,
+                                          .damping = options_.damping,
+                                          .theta = theta_of(dt),
+                                          .dt = dt,
+                                          .tolerance = options_.solver_tolerance});
+    for (std::size_t i = 0; i < count; ++i)
+        coarse_.velocity[i] += (step.velocity[i] - before[i]) * geometry_.normal[i];
+    for (std::size_t r = 0; r < gas_.size(); ++r) gas_[r].volume += step.swept[r];
+    return step;
+}
+
+/// Waves as short as the spacing are not resolved, and with theta = 1/2 nothing damps them. What two passes leave of the
+/// velocity is made of these: a uniform velocity leaves nothing, a swing in mode 2 the square of a hundredth.
+void MelpSolver::filter_short_waves() {
+    if (options_.grid_filter == 0.0) return;
+    const std::vector<Vec3> rough = roughness(geometry_, roughness(geometry_, coarse_.velocity));
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        const Vec3& n = geometry_.normal[i];
+        coarse_.velocity[i] -= (options_.grid_filter * dot(rough[i], n)) * n;
+    }
+}
+
+/// Swings that steps of this length do not resolve would ring from step to step with theta = 1/2: they are damped. So is
+/// everything while bubbles touch: forces at a junction are not those of the matrix to second order, and theta = 1/2 blew
+/// two bubbles up that met without damping.
+double MelpSolver::theta_of(double dt) const {
+    constexpr double kResolved = 10.0;  // steps per period
+    const bool apart = geometry_.neighbors.other.index.empty();
+    return apart && kResolved * dt < slowest_period(gas_) ? options_.theta : 1.0;
+}
+
+void MelpSolver::give_to_fine(double dt) {
+    transfer_->to_fine({coarse_.position, coarse_.velocity, films_.thickness, films_.seen_thickness},
+                       -std::expm1(-options_.thickness_rate * dt), fine_);
+}
+
+/// Mean velocity of each region's film, by mass.
+std::vector<Vec3> MelpSolver::region_velocities() const {
+    std::vector<Vec3> velocity(gas_.size());
+    std::vector<double> volume(gas_.size(), 0.0);
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        const auto r = static_cast<std::size_t>(coarse_.region[i]);
+        velocity[r] += films_.liquid_volume[i] * coarse_.velocity[i];
+        volume[r] += films_.liquid_volume[i];
+    }
+    for (std::size_t r = 0; r < gas_.size(); ++r) velocity[r] = velocity[r] / volume[r];
+    return velocity;
+}
+
+/// Coarse particles follow the film along its normals and its region as a whole, and spread; where they leave the liquid
+/// behind, they take the velocity of the place they come to.
+void MelpSolver::move_coarse(double dt, const NormalStep& step) {
+    const std::vector<Vec3> mean = region_velocities();
+    const std::vector<Vec3> shift = options_.redistribution
+                                        ? evening_shift(geometry_, coarse_, gas_.size(), spacing_)
+                                        : std::vector<Vec3>(coarse_.size());
+    const std::vector<Tensor> slope = gradient(geometry_, coarse_.position, coarse_.velocity);
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        const Vec3& n = geometry_.normal[i];
+        const Vec3& carried = mean[static_cast<std::size_t>(coarse_.region[i])];
+        const Vec3 along = dt * (carried - dot(carried, n) * n);
+        const Vec3 liquid = dt * (coarse_.velocity[i] - dot(coarse_.velocity[i], n) * n);
+        coarse_.position[i] += along + (dt * step.mean[i]) * n + along_patch(geometry_.patch[i], shift[i]);
+        coarse_.velocity[i] += slope[i] * (along + shift[i] - liquid);
+    }
+    coarse_.frame_normal = geometry_.normal;
+}
+
+/// Fine particles go with the flow, onto the film where it is now, and stretch with it.
+void MelpSolver::move_fine(double dt) {
+    parallel_for(fine_.size(), [&](std::size_t p) {
+        const Tensor& slope = fine_.gradient[p];
+        fine_.position[p] += dt * fine_.velocity[p];
+        fine_.thickness[p] *= std::exp(-dt * (slope[0][0] + slope[1][1] + slope[2][2]));
+    });
+    transfer_->project(geometry_.patch, geometry_.normal, fine_);
+    constexpr std::int64_t kSortEvery = 32;
+    if ((steps_ + 1) % kSortEvery == 0) sort_fine_particles(fine_, spacing_);
+}
+
+void MelpSolver::update_shape() { geometry_ = geometry_of(coarse_, support_radius()); }
+
+void MelpSolver::update_liquid() {
+    transfer_.emplace(coarse_, geometry_.normal, fine_, support_radius());
+    films_ = films_of(geometry_, coarse_, transfer_->to_coarse(coarse_, fine_), even_, law_);
+}
+
+/// Sums over particles know a volume to a thousandth only, which would be 100 Pa: gases go by what films sweep, and
+/// follow the sums slowly. [method sheet 16.2]
+void MelpSolver::follow_particle_volumes(double dt) {
+    const double share = -std::expm1(-options_.volume_rate * dt);
+    const std::vector<double> volume = particle_volumes(coarse_, geometry_, gas_);
+    for (std::size_t r = 0; r < gas_.size(); ++r) gas_[r].volume += share * (volume[r] - gas_[r].volume);
+}
+
+/// What went wrong in this step, before anything has moved; empty when nothing has.
+std::string MelpSolver::fault_of_step() const {
+    for (std::size_t i = 0; i < coarse_.size(); ++i)
+        if (!std::isfinite(squared_norm(coarse_.velocity[i])))
+            return fmt::format("the velocity of coarse particle {} is not finite", i);
+    for (const Gas& gas : gas_)
+        if (!(gas.volume > 0.0)) return fmt::format("bubble {} has no volume left", gas.region);
+    return {};
+}
+
+/// Of mode 2 of the smallest bubble, in an empty space but for air_mass. [method sheet 14, V7]
+double MelpSolver::slowest_period(const std::vector<Gas>& bubbles) const {
+    const film::Material& material = input_.films->material;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const Gas& gas : bubbles) {
+        const double radius = std::cbrt(0.75 * gas.volume / std::numbers::pi);
+        const double mass = options_.liquid_density * material.thickness + options_.air_mass * material.air_density * radius;
+        shortest = std::min(shortest, std::numbers::pi * radius * std::sqrt(mass / material.film_tension()));
+    }
+    return shortest;
+}
+
+}  // namespace lamella::melp

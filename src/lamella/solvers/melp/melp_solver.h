@@ -1,0 +1,94 @@
+#pragma once
+
+#include "lamella/sim/registry.h"
+#include "lamella/sim/solver.h"
+#include "lamella/solvers/melp/films.h"
+#include "lamella/solvers/melp/normal_motion.h"
+#include "lamella/solvers/melp/options.h"
+#include "lamella/solvers/melp/particles.h"
+#include "lamella/solvers/melp/surfactant.h"
+#include "lamella/solvers/melp/transfer.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lamella::melp {
+
+/// Thin films and foams by moving Eulerian-Lagrangian particles [Deng22], in the form of docs/melp.md: few coarse
+/// particles carry the shape of the films, many fine ones are the liquid in them.
+class MelpSolver final : public sim::Solver {
+public:
+    /// @throws InputError  options or films that do not go together
+    MelpSolver(const Options& options, const sim::SolverInput& input);
+
+    void start(const sim::StartContext& context) override;
+    sim::StepReport advance(double time_limit) override;
+
+    double time() const override { return time_; }
+    std::int64_t step() const override { return steps_; }
+
+    sim::Frame frame() const override;
+    std::vector<sim::Scalar> scalars() const override;
+    std::vector<sim::Scalar> characteristic_numbers() const override;
+
+    void save(sim::StateWriter& out) const override;
+    void load(sim::StateReader& in) override;
+
+    const CoarseParticles& coarse() const { return coarse_; }
+    const FineParticles& fine() const { return fine_; }
+    const std::vector<Gas>& gas() const { return gas_; }
+    const Geometry& geometry() const { return geometry_; }
+    const Films& films() const { return films_; }
+    double spacing() const { return spacing_; }
+
+private:
+    double support_radius() const { return options_.support_radius * spacing_; }
+    double slowest_period(const std::vector<Gas>& bubbles) const;
+    // The stages of a step, in order.
+    double choose_step(double time_limit) const;
+    double strongest_pull() const;
+    double theta_of(double dt) const;
+    SurfactantStep push_along_film(double dt);
+    NormalStep push_along_normals(double dt);
+    void filter_short_waves();
+    void give_to_fine(double dt);
+    void move_coarse(double dt, const NormalStep& step);
+    void move_fine(double dt);
+    void update_shape();
+    void update_liquid();
+    void follow_particle_volumes(double dt);
+
+    std::vector<double> masses() const;
+    Vec3 velocity_of(std::size_t i) const;
+    sim::Surface surface() const;
+    std::vector<Vec3> region_velocities() const;
+    void even_out_layout();
+    std::string fault_of_step() const;
+
+    Options options_;
+    sim::SolverInput input_;
+    film::SurfactantLaw law_;
+
+    CoarseParticles coarse_;
+    FineParticles fine_;
+    std::vector<Gas> gas_;
+    std::vector<EvenFilm> even_;
+    double spacing_ = 0.0;
+    double time_ = 0.0;
+    std::int64_t steps_ = 0;
+    double step_ = 0.0;             ///< the last one
+    double initial_liquid_ = 0.0;   ///< [m^3]
+
+    // What follows from the above: set by update_shape and update_liquid.
+    Geometry geometry_;
+    std::optional<Transfer> transfer_;
+    Films films_;
+    // Forces of this step that films exert on each other along themselves. [N]
+    std::vector<Vec3> marangoni_;
+};
+
+/// Adds the solver "melp".
+void register_melp(sim::SolverRegistry& registry);
+
+}  // namespace lamella::melp

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "lamella/core/vec.h"
+#include "lamella/solvers/melp/kernel.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lamella::melp {
+
+/// For each coarse particle the others within the kernel's reach, by rows, each row in ascending order; pairs are in
+/// both rows with the same bits. Built once per step, used by every stage.
+struct Neighbors {
+    std::vector<std::uint32_t> start;  ///< size + 1
+    std::vector<std::uint32_t> index;
+    std::vector<double> weight;     ///< W of the pair [1/m^2]
+    std::vector<double> laplacian;  ///< FilmKernel::laplacian_weight of the pair [1/m^4]
+    FilmKernel kernel{};
+
+    std::size_t size() const { return start.empty() ? 0 : start.size() - 1; }
+    /// Positions in index, weight and laplacian that belong to particle i.
+    std::size_t begin(std::size_t i) const { return start[i]; }
+    std::size_t end(std::size_t i) const { return start[i + 1]; }
+};
+
+/// Pairs of one region whose normals agree (n_i . n_j > 0.2): the two sides of a film that is nearly pinched do not see
+/// each other. Pairs of two regions, whatever their normals, stand in `other`.
+struct NeighborLists {
+    Neighbors same;   ///< of one region
+    Neighbors other;  ///< of two regions
+};
+NeighborLists find_neighbors(std::span<const Vec3> position,
+                             std::span<const Vec3> normal,
+                             std::span<const std::int32_t> region,
+                             double support_radius);
+
+}  // namespace lamella::melp

@@ -1,0 +1,269 @@
+#include "lamella/solvers/melp/normal_motion.h"
+
+#include "lamella/core/parallel.h"
+#include "lamella/linalg/dense.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace lamella::melp {
+
+Cohesion cohesion(double gamma, double beta) {
+    const double g = std::min(gamma, 1.0);
+    const double f = g + beta * g * (1.0 - g), slope = 1.0 + beta * (1.0 - 2.0 * g);
+    return {2.0 - f - g * slope, slope};
+}
+
+namespace {
+
+std::size_t region_of(const CoarseParticles& coarse, std::size_t i) { return static_cast<std::size_t>(coarse.region[i]); }
+
+/// Strengths of the pairs: c_ij, of one region and of two. [N/m]
+struct Pairs {
+    std::vector<double> own;    ///< tau_i per particle
+    std::vector<double> same;   ///< per entry of neighbors.same
+    std::vector<double> other;  ///< per entry of neighbors.other
+};
+
+Pairs pair_strengths(const NormalProblem& p) {
+    const Neighbors& same = p.geometry.neighbors.same;
+    const Neighbors& other = p.geometry.neighbors.other;
+    const std::vector<double>& a = p.geometry.area;
+    Pairs pairs;
+    pairs.own.resize(a.size());
+    pairs.same.resize(same.index.size());
+    pairs.other.resize(other.index.size());
+    std::vector<double> toward(a.size());  // sigma f'
+    parallel_for(a.size(), [&](std::size_t i) {
+        double gamma = 0.0;
+        for (std::size_t k = other.begin(i); k < other.end(i); ++k) gamma += a[other.index[k]] * other.weight[k];
+        const Cohesion c = cohesion(gamma, p.junction_correction);
+        pairs.own[i] = p.interface_tension[i] * c.own;
+        toward[i] = p.interface_tension[i] * c.other;
+    });
+    parallel_for(a.size(), [&](std::size_t i) {
+        const auto strength = [&](const Neighbors& list, std::size_t k, const std::vector<double>& tension) {
+            const std::size_t j = list.index[k];
+            return 0.5 * (tension[i] + tension[j]) * (a[i] * a[j]) * list.laplacian[k];
+        };
+        for (std::size_t k = same.begin(i); k < same.end(i); ++k) pairs.same[k] = strength(same, k, pairs.own);
+        for (std::size_t k = other.begin(i); k < other.end(i); ++k) pairs.other[k] = strength(other, k, toward);
+    });
+    return pairs;
+}
+
+/// Tension, cohesion and gas pressure along the normals. [N]
+std::vector<double> forces(const NormalProblem& p, const Pairs& pairs, const std::vector<double>& gas_area) {
+    const Geometry& g = p.geometry;
+    const std::vector<Vec3>& x = p.coarse.position;
+    std::vector<double> force(g.size());
+    parallel_for(g.size(), [&](std::size_t i) {
+        Vec3 pull;
+        const Neighbors& same = g.neighbors.same;
+        for (std::size_t k = same.begin(i); k < same.end(i); ++k) pull += pairs.same[k] * (x[same.index[k]] - x[i]);
+        const Neighbors& other = g.neighbors.other;
+        for (std::size_t k = other.begin(i); k < other.end(i); ++k) pull += pairs.other[k] * (x[other.index[k]] - x[i]);
+        force[i] = dot(pull, g.normal[i]) + p.gas[region_of(p.coarse, i)].gauge_pressure(p.outside_pressure) * gas_area[i];
+    });
+    return force;
+}
+
+/// For each region the smallest one of the cluster it belongs to by contact.
+std::vector<std::size_t> clusters(const NormalProblem& p) {
+    std::vector<std::size_t> cluster(p.gas.size());
+    std::iota(cluster.begin(), cluster.end(), std::size_t{0});
+    const auto root = [&](std::size_t r) {
+        while (cluster[r] != r) r = cluster[r];
+        return r;
+    };
+    const Neighbors& other = p.geometry.neighbors.other;
+    for (std::size_t i = 0; i < p.coarse.size(); ++i)
+        for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
+            const std::size_t a = root(region_of(p.coarse, i)), b = root(region_of(p.coarse, other.index[k]));
+            cluster[std::max(a, b)] = std::min(a, b);
+        }
+    for (std::size_t& r : cluster) r = root(r);
+    return cluster;
+}
+
+/// Bubbles that touch, free of wires: films push and twist them by nothing as a whole. Forces that have lost their part
+/// along the film do, a little. [method sheet 16.4 c']
+class FreeCluster {
+public:
+    FreeCluster(const NormalProblem& p, std::vector<std::size_t> members) : p_(p), members_(std::move(members)) {
+        for (const std::size_t i : members_) {
+            center_ += p.geometry.area[i] * p.coarse.position[i];
+            length_ += p.geometry.area[i];
+        }
+        center_ = center_ / length_;
+        length_ = std::sqrt(length_);
+    }
+
+    /// Takes from values along the normals what pushes and twists: of all changes share_i e_i . z, with e_i the rigid
+    /// motions along the normal, the one after which sum_i (values_i n_i + beside_i) has no resultant and no moment.
+    void remove_resultant(std::vector<double>& values, std::span<const Vec3> beside, std::span<const double> share) const {
+        std::array<double, kRigid * kRigid> matrix{};
+        std::array<double, kRigid> resultant{};
+        for (const std::size_t i : members_) {
+            const Rigid e = rigid(i, p_.geometry.normal[i]);
+            const Rigid f = rigid(i, values[i] * p_.geometry.normal[i] + beside[i]);
+            for (std::size_t a = 0; a < kRigid; ++a) {
+                resultant[a] += f[a];
+                for (std::size_t b = 0; b < kRigid; ++b) matrix[a * kRigid + b] += share[i] * e[a] * e[b];
+            }
+        }
+        // A sphere cannot be twisted by forces along its normals: such directions stay as they are.
+        constexpr double kCannot = 1e-4;
+        const auto z = linalg::solve_symmetric(kRigid, matrix, resultant, kCannot).x;
+        for (const std::size_t i : members_) {
+            const Rigid e = rigid(i, p_.geometry.normal[i]);
+            for (std::size_t a = 0; a < kRigid; ++a) values[i] -= share[i] * e[a] * z[a];
+        }
+    }
+
+private:
+    static constexpr std::size_t kRigid = 6;
+    using Rigid = std::array<double, kRigid>;
+
+    /// A vector at a particle and its moment about the center, over the cluster's size.
+    Rigid rigid(std::size_t i, const Vec3& f) const {
+        const Vec3 moment = cross(p_.coarse.position[i] - center_, f) / length_;
+        return {f[0], f[1], f[2], moment[0], moment[1], moment[2]};
+    }
+
+    const NormalProblem& p_;
+    std::vector<std::size_t> members_;
+    Vec3 center_;
+    double length_ = 0.0;
+};
+
+std::vector<FreeCluster> free_clusters(const NormalProblem& p) {
+    const std::vector<std::size_t> cluster_of = clusters(p);
+    std::vector<std::vector<std::size_t>> members(p.gas.size());
+    for (std::size_t i = 0; i < p.coarse.size(); ++i) members[cluster_of[region_of(p.coarse, i)]].push_back(i);
+    std::vector<FreeCluster> free;
+    for (std::vector<std::size_t>& group : members) {
+        const bool held = std::any_of(group.begin(), group.end(),
+                                      [&](std::size_t i) { return !p.gas[region_of(p.coarse, i)].closed; });
+        if (!group.empty() && !held) free.emplace_back(p, std::move(group));
+    }
+    return free;
+}
+
+/// The areas that gas pushes on [m^2]. Those of a closed bubble push it nowhere and do not turn it, so that it flies and turns
+/// without a change of volume. Sums over particles know that to a thousandth, but gas at one atmosphere moves a bubble by
+/// what is left.
+std::vector<double> gas_areas(const NormalProblem& p) {
+    std::vector<double> area = p.geometry.area;
+    const std::vector<Vec3> nothing(area.size());
+    std::vector<std::vector<std::size_t>> members(p.gas.size());
+    for (std::size_t i = 0; i < area.size(); ++i) members[region_of(p.coarse, i)].push_back(i);
+    for (std::size_t r = 0; r < members.size(); ++r)
+        if (p.gas[r].closed && !members[r].empty())
+            FreeCluster(p, std::move(members[r])).remove_resultant(area, nothing, p.geometry.area);
+    return area;
+}
+
+/// How forces of tension and cohesion change with velocities along the normals.
+class FilmStiffness {
+public:
+    FilmStiffness(const NormalProblem& p, const Pairs& pairs) : p_(p), pairs_(pairs), diagonal_(p.coarse.size()) {
+        const Neighbors& same = p.geometry.neighbors.same;
+        const Neighbors& other = p.geometry.neighbors.other;
+        const std::vector<Vec3>& n = p.geometry.normal;
+        parallel_for(diagonal_.size(), [&](std::size_t i) {
+            // At a junction films fold: full stiffness there, none of it forgiven for moving as a whole.
+            const bool free = other.index.empty();
+            double sum = 0.0;
+            for (std::size_t k = same.begin(i); k < same.end(i); ++k)
+                sum -= pairs.same[k] * (free ? dot(n[i], n[same.index[k]]) : 1.0);
+            for (std::size_t k = other.begin(i); k < other.end(i); ++k) sum -= pairs.other[k];
+            diagonal_[i] = sum;
+        });
+    }
+
+    double diagonal(std::size_t i) const { return diagonal_[i]; }
+
+    /// (J_film v)_i
+    template <class Values>
+    double apply(const Values& v, std::size_t i) const {
+        const Neighbors& same = p_.geometry.neighbors.same;
+        const Neighbors& other = p_.geometry.neighbors.other;
+        const std::vector<Vec3>& n = p_.geometry.normal;
+        double sum = diagonal_[i] * v[i];
+        for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum += pairs_.same[k] * v[same.index[k]];
+        for (std::size_t k = other.begin(i); k < other.end(i); ++k)
+            sum += pairs_.other[k] * dot(n[i], n[other.index[k]]) * v[other.index[k]];
+        return sum;
+    }
+
+private:
+    const NormalProblem& p_;
+    const Pairs& pairs_;
+    std::vector<double> diagonal_;
+};
+
+/// sum of a v over each region: how fast its gas grows [m^3/s].
+std::vector<double> growth(const NormalProblem& p, const std::vector<double>& gas_area, const std::vector<double>& v) {
+    std::vector<double> sum(p.gas.size(), 0.0);
+    for (std::size_t i = 0; i < v.size(); ++i) sum[region_of(p.coarse, i)] += gas_area[i] * v[i];
+    return sum;
+}
+
+}  // namespace
+
+NormalStep move_along_normals(const NormalProblem& p) {
+    const std::size_t count = p.coarse.size();
+    const Pairs pairs = pair_strengths(p);
+    const std::vector<FreeCluster> free = free_clusters(p);
+    const std::vector<double> gas_area = gas_areas(p);
+    std::vector<double> force = forces(p, pairs, gas_area);
+    std::vector<Vec3> beside(p.internal.begin(), p.internal.end());
+    for (std::size_t i = 0; p.floating && i < count; ++i) beside[i] += p.external[i];
+    for (const FreeCluster& cluster : free) cluster.remove_resultant(force, beside, p.geometry.area);
+
+    const FilmStiffness stiffness(p, pairs);
+    const double implicit = p.theta * p.theta * p.dt * p.dt, mixed = p.theta * (1.0 - p.theta) * p.dt * p.dt;
+    std::vector<double> gas(p.gas.size());  // dt^2 p / V
+    for (std::size_t r = 0; r < gas.size(); ++r)
+        gas[r] = p.gas[r].closed ? p.dt * p.dt * p.gas[r].amount / (p.gas[r].volume * p.gas[r].volume) : 0.0;
+    std::vector<double> inertia(count), given(count), right(count), scale(count);
+    parallel_for(count, [&](std::size_t i) {
+        const double a = gas_area[i];
+        inertia[i] = p.mass[i] * (1.0 + p.dt * p.damping);
+        given[i] = p.mass[i] * p.velocity[i] + p.dt * (force[i] + dot(p.external[i], p.geometry.normal[i]));
+        right[i] = given[i] + mixed * stiffness.apply(p.velocity, i);
+        scale[i] = 1.0 / (inertia[i] - implicit * stiffness.diagonal(i) + gas[region_of(p.coarse, i)] * a * a);
+    });
+    const auto apply = [&](const std::vector<double>& v, std::vector<double>& y) {
+        y.resize(count);
+        const std::vector<double> grown = growth(p, gas_area, v);
+        parallel_for(count, [&](std::size_t i) {
+            const std::size_t r = region_of(p.coarse, i);
+            y[i] = inertia[i] * v[i] - implicit * stiffness.apply(v, i) + gas[r] * grown[r] * gas_area[i];
+        });
+    };
+    NormalStep step;
+    step.velocity.assign(p.velocity.begin(), p.velocity.end());
+    constexpr int kMostIterations = 2000;
+    step.solution = linalg::conjugate_gradient(apply, scale, right, step.velocity, p.tolerance, kMostIterations);
+
+    // What the implicit terms have added pushes nothing as a whole either: a rigid motion mends that, which strains no film.
+    std::vector<double> added(count);
+    for (std::size_t i = 0; i < count; ++i) added[i] = inertia[i] * step.velocity[i] - given[i];
+    const std::vector<Vec3> nothing(count);
+    for (const FreeCluster& cluster : free) cluster.remove_resultant(added, nothing, p.mass);
+    step.mean.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        step.velocity[i] = (given[i] + added[i]) / inertia[i];
+        step.mean[i] = p.theta * step.velocity[i] + (1.0 - p.theta) * p.velocity[i];
+    }
+    step.swept = growth(p, gas_area, step.mean);
+    for (double& volume : step.swept) volume *= p.dt;
+    return step;
+}
+
+}  // namespace lamella::melp

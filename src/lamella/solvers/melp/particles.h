@@ -1,0 +1,72 @@
+#pragma once
+
+#include "lamella/core/vec.h"
+#include "lamella/solvers/melp/tensor.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace lamella::melp {
+
+/// Eulerian particles: few, evenly spread, they carry the shape of the films. Every column has one entry per particle.
+///
+/// Only what a step starts from; all else that a coarse particle has (area, thickness, curvature, the velocity along
+/// the film) follows from these and from the fine particles, see Films.
+struct CoarseParticles {
+    std::vector<Vec3> position;        ///< [m]
+    std::vector<Vec3> frame_normal;    ///< unit normal before the last move: sets the sign of the new one
+    std::vector<Vec3> velocity;        ///< of the film [m/s]; its part along the film is that of the fine particles
+    std::vector<std::int32_t> region;  ///< whose surface it belongs to: an index of Sheets
+
+    std::size_t size() const { return position.size(); }
+
+    /// The one list of columns: resizing, saving and reordering use it.
+    template <class Self, class Visitor>
+    static void for_each_column(Self& self, Visitor&& visit) {
+        visit("position", self.position);
+        visit("frame_normal", self.frame_normal);
+        visit("velocity", self.velocity);
+        visit("region", self.region);
+    }
+};
+
+/// Lagrangian particles: many, they are the liquid and move with it.
+struct FineParticles {
+    std::vector<Vec3> position;              ///< [m]
+    std::vector<Vec3> normal;                ///< of the film there
+    std::vector<Vec3> velocity;              ///< [m/s]
+    std::vector<Tensor> gradient;        ///< of the velocity along the film, one row per component [1/s]
+    std::vector<double> liquid_volume;       ///< [m^3]
+    std::vector<double> surfactant;          ///< per interface [mol]
+    std::vector<double> thickness;           ///< of the film there: what is seen [m]
+    std::vector<std::int32_t> region;        ///< as of coarse particles
+
+    std::size_t size() const { return position.size(); }
+
+    template <class Self, class Visitor>
+    static void for_each_column(Self& self, Visitor&& visit) {
+        visit("position", self.position);
+        visit("normal", self.normal);
+        visit("velocity", self.velocity);
+        visit("gradient", self.gradient);
+        visit("liquid_volume", self.liquid_volume);
+        visit("surfactant", self.surfactant);
+        visit("thickness", self.thickness);
+        visit("region", self.region);
+    }
+};
+
+/// Gas that films close in. Isothermal, ideal, of one pressure.
+struct Gas {
+    std::int32_t region = 0;  ///< its number in the scene
+    double amount = 0.0;      ///< pressure * volume, constant [J]
+    double volume = 0.0;      ///< what the films have swept; follows the particles' own volume slowly [m^3]
+    double calibration = 1.0; ///< true volume at the start / the particles' own volume then
+    bool closed = true;       ///< false: a film on a wire, the same air on both sides
+
+    /// Above that of the outside air [Pa].
+    double gauge_pressure(double outside) const { return closed ? amount / volume - outside : 0.0; }
+};
+
+}  // namespace lamella::melp

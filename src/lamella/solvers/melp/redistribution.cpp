@@ -1,0 +1,99 @@
+#include "lamella/solvers/melp/redistribution.h"
+
+#include "lamella/core/parallel.h"
+#include "lamella/linalg/conjugate_gradient.h"
+#include "lamella/solvers/melp/operators.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lamella::melp {
+namespace {
+
+constexpr double kFarthest = 0.1;  // spacings
+constexpr double kReach = 200.0;   // spacing^2: waves longer than 14 spacings go within a pass
+constexpr double kShort = 0.3;     // spacing^2
+
+/// Density over the region's mean, minus one.
+std::vector<double> excess(const Geometry& g, const CoarseParticles& coarse, std::size_t regions) {
+    std::vector<double> sum(regions, 0.0), particles(regions, 0.0);
+    for (std::size_t i = 0; i < g.size(); ++i) {
+        sum[static_cast<std::size_t>(coarse.region[i])] += 1.0 / g.area[i];
+        particles[static_cast<std::size_t>(coarse.region[i])] += 1.0;
+    }
+    std::vector<double> result(g.size());
+    for (std::size_t i = 0; i < g.size(); ++i) {
+        const auto r = static_cast<std::size_t>(coarse.region[i]);
+        result[i] = particles[r] / (sum[r] * g.area[i]) - 1.0;
+    }
+    return result;
+}
+
+std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, double reach) {
+    const Neighbors& same = g.neighbors.same;
+    const std::size_t count = g.size();
+    std::vector<double> right(count), scale(count), diagonal(count);
+    parallel_for(count, [&](std::size_t i) {
+        double sum = 0.0;
+        for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum += g.area[same.index[k]] * same.laplacian[k];
+        diagonal[i] = g.area[i] * (1.0 + reach * sum);
+        scale[i] = 1.0 / diagonal[i];
+        right[i] = g.area[i] * q[i];
+    });
+    const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
+        y.resize(count);
+        parallel_for(count, [&](std::size_t i) {
+            double sum = 0.0;
+            for (std::size_t k = same.begin(i); k < same.end(i); ++k)
+                sum += g.area[same.index[k]] * same.laplacian[k] * x[same.index[k]];
+            y[i] = diagonal[i] * x[i] - reach * g.area[i] * sum;
+        });
+    };
+    std::vector<double> phi(count, 0.0);
+    constexpr double kTolerance = 1e-2;
+    constexpr int kMostIterations = 200;
+    linalg::conjugate_gradient(apply, scale, right, phi, kTolerance, kMostIterations);
+    return phi;
+}
+
+}  // namespace
+
+std::vector<Vec3> evening_shift(const Geometry& g, const CoarseParticles& coarse, std::size_t regions, double spacing) {
+    const double reach = kReach * spacing * spacing, farthest = kFarthest * spacing;
+    std::vector<Vec3> shift = gradient(g, coarse.position, smoothed(g, excess(g, coarse, regions), reach));
+    double longest = 0.0;
+    for (Vec3& d : shift) {
+        d *= -reach;
+        longest = std::max(longest, norm(d));
+    }
+    const double factor = longest > farthest ? farthest / longest : 1.0;
+    const std::vector<Vec3> uneven = unevenness(g, coarse.position);
+    for (std::size_t i = 0; i < shift.size(); ++i) {
+        Vec3 away = (-kShort * spacing * spacing) * uneven[i];
+        away -= dot(away, g.normal[i]) * g.normal[i];
+        const double length = norm(away);
+        shift[i] = factor * shift[i] + (length > farthest ? farthest / length : 1.0) * away;
+    }
+    return shift;
+}
+
+double density_spread(const Geometry& g, const CoarseParticles& coarse, std::size_t regions) {
+    const std::vector<double> e = excess(g, coarse, regions);
+    std::vector<double> low(regions, std::numeric_limits<double>::infinity()), high(regions, -1.0);
+    for (std::size_t i = 0; i < e.size(); ++i) {
+        const auto r = static_cast<std::size_t>(coarse.region[i]);
+        low[r] = std::min(low[r], e[i]);
+        high[r] = std::max(high[r], e[i]);
+    }
+    double worst = 0.0;
+    for (std::size_t r = 0; r < regions; ++r) worst = std::max(worst, high[r] - low[r]);
+    return worst;
+}
+
+Vec3 along_patch(const Patch& patch, const Vec3& shift) {
+    const double u = dot(patch.frame.e1, shift), v = dot(patch.frame.e2, shift);
+    return u * patch.frame.e1 + v * patch.frame.e2 + (patch.height(u, v) - patch.c[0]) * patch.frame.normal;
+}
+
+}  // namespace lamella::melp

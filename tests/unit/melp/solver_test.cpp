@@ -1,0 +1,165 @@
+#include "lamella/solvers/melp/melp_solver.h"
+
+#include "../sim/state_memory.h"
+#include "bubbles.h"
+
+#include "lamella/core/error.h"
+#include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/start.h"
+#include "lamella/solvers/melp/surface.h"
+
+#include <gtest/gtest.h>
+
+namespace lamella::melp {
+namespace {
+
+/// Two bubbles that touch, one of them sent off, drain while their liquid is uneven.
+constexpr const char* kBusy = R"(
+seed = 3
+[material]
+gravity = [0.0, 0.0, -9.81]
+[[bubble]]
+center = [-0.0201, 0.0, 0.0]
+radius = 0.02
+velocity = [0.2, 0.0, 0.0]
+[[bubble]]
+center = [0.0151, 0.0, 0.0]
+radius = 0.015
+[resolution]
+edge_length = 0.003
+[melp]
+air_drag = 1e-3
+wind = [0.0, 1.0, 0.0]
+start.thickness_noise = 0.5
+)";
+
+void advance(MelpSolver& solver, int steps) {
+    for (int k = 0; k < steps; ++k) solver.advance(1e9);
+}
+
+test::StateMemory state_of(const MelpSolver& solver) {
+    test::StateMemory memory;
+    solver.save(memory);
+    return memory;
+}
+
+TEST(MelpSolver, GivesTheSameBitsOnOneAndTwoThreads) {
+    std::vector<test::StateMemory> states;
+    for (const int threads : {1, 2}) {
+        const ThreadLimit limit(threads);
+        auto solver = solver_of(kBusy);
+        solver->start({});
+        advance(*solver, 40);
+        states.push_back(state_of(*solver));
+    }
+    EXPECT_EQ(states[0].reals, states[1].reals);
+    EXPECT_EQ(states[0].integers, states[1].integers);
+}
+
+TEST(MelpSolver, GoesOnFromACheckpointWithTheSameBits) {
+    auto whole = solver_of(kBusy);
+    whole->start({});
+    advance(*whole, 40);
+    const test::StateMemory expected = state_of(*whole);
+    for (const int stop : {0, 1, 7, 33}) {
+        auto first = solver_of(kBusy);
+        first->start({});
+        advance(*first, stop);
+        test::StateMemory memory = state_of(*first);
+        auto second = solver_of(kBusy);
+        second->load(memory);
+        advance(*second, 40 - stop);
+        EXPECT_EQ(state_of(*second).reals, expected.reals) << stop;
+        EXPECT_EQ(state_of(*second).integers, expected.integers) << stop;
+        EXPECT_EQ(second->frame().points.position, first->frame().points.position.empty() ? std::vector<Vec3>{} : whole->frame().points.position);
+    }
+}
+
+TEST(MelpSolver, RefusesACheckpointThatIsNone) {
+    auto solver = solver_of(kBusy);
+    solver->start({});
+    for (const char* name : {"coarse/count", "fine/count", "regions"}) {
+        test::StateMemory memory = state_of(*solver);
+        memory.integers[name][0] = -1;
+        auto other = solver_of(kBusy);
+        EXPECT_THROW(other->load(memory), InputError) << name;
+    }
+    test::StateMemory memory = state_of(*solver);
+    memory.integers["coarse/region"][0] = 7;
+    auto other = solver_of(kBusy);
+    EXPECT_THROW(other->load(memory), InputError);
+}
+
+TEST(MelpSolver, RefusesFilmsAndOptionsThatItDoesNotKnow) {
+    const std::string ball = "[[bubble]]\nradius = 0.02\n";
+    EXPECT_THROW(solver_of("[[film]]\nshape = \"disk\"\n"), InputError);
+    EXPECT_THROW(solver_of("[[film]]\nshape = \"kelvin\"\n"), InputError);
+    EXPECT_THROW(solver_of(ball + "[[event]]\ntime = 1.0\nregion = 1\n"), InputError);
+    EXPECT_THROW(solver_of(ball + "[[tension]]\nb = 1\nfactor = 2.0\n"), InputError);
+    EXPECT_THROW(solver_of(ball + "[melp]\nsurfactant_concentration = 1.0\n"), InputError);
+    EXPECT_THROW(solver_of(ball + "[melp]\nfine_ratio = -1\n"), InputError);
+    EXPECT_NO_THROW(solver_of(ball));
+}
+
+TEST(MelpSolver, LandsOnTheTimeLimit) {
+    auto solver = solver_of(kBusy);
+    solver->start({});
+    const double limit = 0.0011;
+    for (int k = 0; k < 100 && solver->time() < limit; ++k) solver->advance(limit);
+    EXPECT_EQ(solver->time(), limit);
+}
+
+TEST(MelpSolver, ConservesLiquidAndSurfactantToRounding) {
+    auto solver = solver_of(kBusy);
+    solver->start({});
+    const double liquid = scalar(*solver, "liquid_mass"), surfactant = scalar(*solver, "surfactant_amount");
+    advance(*solver, 100);
+    EXPECT_NEAR(scalar(*solver, "liquid_mass") / liquid, 1.0, 1e-12);
+    EXPECT_NEAR(scalar(*solver, "surfactant_amount") / surfactant, 1.0, 1e-12);
+    EXPECT_EQ(scalar(*solver, "strays"), 0.0);
+}
+
+TEST(MelpSolver, ReportsTheSameNamesEveryTime) {
+    auto solver = solver_of(kBusy);
+    solver->start({});
+    const auto before = solver->scalars();
+    advance(*solver, 2);
+    const auto after = solver->scalars();
+    ASSERT_EQ(before.size(), after.size());
+    for (std::size_t k = 0; k < before.size(); ++k) EXPECT_EQ(before[k].name, after[k].name);
+    const sim::Frame frame = solver->frame();
+    EXPECT_EQ(frame.points.size(), solver->coarse().size() + solver->fine().size());
+    for (const sim::Field& field : frame.points.fields)
+        EXPECT_EQ(field.values.size(), frame.points.size() * static_cast<std::size_t>(field.components)) << field.name;
+}
+
+TEST(SurfaceTriangles, CloseABubbleInWhileItSwingsAndFlies) {
+    auto solver = bubble(800, "fine_ratio = 0\nstart.mode = 3\nstart.mode_amplitude = 0.1\n");
+    for (int k = 0; k < 4; ++k) {
+        const sim::Surface surface = solver->frame().surface;
+        EXPECT_EQ(open_edges(surface.triangles), 0U) << k;
+        EXPECT_EQ(surface.triangles.size(), 2 * solver->coarse().size() - 4) << k;  // Euler's formula for a sphere
+        double volume = 0.0;
+        for (const auto& t : surface.triangles)
+            volume += dot(surface.position[t[0]], cross(surface.position[t[1]], surface.position[t[2]])) / 6.0;
+        EXPECT_NEAR(volume / scalar(*solver, "particle_volume"), 1.0, 0.02) << k;  // a polyhedron inside the sphere
+        advance(*solver, 15);
+    }
+}
+
+TEST(SurfaceTriangles, LeaveAHoleInAFilmOpen) {
+    CoarseParticles coarse;
+    for (const Vec3& n : fibonacci_sphere(600))
+        if (n[0] < 0.8) {
+            coarse.position.push_back(n);
+            coarse.frame_normal.push_back(n);
+        }
+    coarse.velocity.resize(coarse.size());
+    coarse.region.resize(coarse.size());
+    const Triangles triangles = surface_triangles(coarse, geometry_of(coarse, 0.45));
+    EXPECT_GT(open_edges(triangles), 10U);  // around the hole
+    EXPECT_LT(open_edges(triangles), 60U);
+}
+
+}  // namespace
+}  // namespace lamella::melp

@@ -1,0 +1,75 @@
+// Two bubbles that have just touched settle into the standard double bubble. [method sheet 14: V2, V4]
+
+#include "../../unit/melp/bubbles.h"
+
+#include "lamella/linalg/dense.h"
+
+#include <gtest/gtest.h>
+
+namespace lamella::melp {
+namespace {
+
+struct Cap {
+    Vec3 center;
+    double radius = 0.0;
+};
+
+/// The sphere through the particles of a region that see no other bubble, by least squares: |x|^2 = 2 c . x + d.
+Cap cap_of(const MelpSolver& solver, std::int32_t region) {
+    std::vector<double> matrix(16, 0.0), right(4, 0.0);
+    const Neighbors& other = solver.geometry().neighbors.other;
+    for (std::size_t i = 0; i < solver.coarse().size(); ++i) {
+        if (solver.coarse().region[i] != region || other.begin(i) != other.end(i)) continue;
+        const Vec3& x = solver.coarse().position[i];
+        const double term[] = {2.0 * x[0], 2.0 * x[1], 2.0 * x[2], 1.0};
+        for (std::size_t a = 0; a < 4; ++a) {
+            right[a] += term[a] * squared_norm(x);
+            for (std::size_t b = 0; b < 4; ++b) matrix[4 * a + b] += term[a] * term[b];
+        }
+    }
+    const std::vector<double> z = linalg::solve_symmetric(4, matrix, right).x;
+    const Vec3 center{{z[0], z[1], z[2]}};
+    return {center, std::sqrt(z[3] + squared_norm(center))};
+}
+
+TEST(DoubleBubble, SettlesFromFirstContact) {
+    auto solver = solver_of(R"(
+[material]
+surface_tension = 0.0725
+thickness = 5e-7
+[[bubble]]
+center = [-0.0502, 0.0, 0.0]
+radius = 0.05
+[[bubble]]
+center = [0.0502, 0.0, 0.0]
+radius = 0.05
+[resolution]
+edge_length = 0.003545
+[melp]
+fine_ratio = 0
+theta = 1.0
+damping = 500.0
+steps_per_period = 90.0
+)");
+    solver->start({});
+    for (const double time : {0.05, 0.1, 0.15}) {
+        while (solver->time() < time) solver->advance(time);
+        const Cap a = cap_of(*solver, 0), b = cap_of(*solver, 1);
+        // Two equal caps and the disk between them: it meets them at 90 degrees + asin(half the distance / radius).
+        const double half = 0.5 * norm(b.center - a.center), radius = 0.5 * (a.radius + b.radius);
+        const double angle = 90.0 + 180.0 / std::numbers::pi * std::asin(half / radius);
+        const double area = std::numbers::pi * (4.0 * radius * (radius + half) + (radius * radius - half * half));
+        const double volume = 1.0 / 3.0 * std::numbers::pi * (radius + half) * (radius + half) * (2.0 * radius - half);
+        const double ideal = 27.0 * std::numbers::pi * std::pow(volume / (9.0 * std::numbers::pi), 2.0 / 3.0);
+        std::printf("t %.2f angle %.2f area %+.4f of 0.059372, shape %+.5f, speed %.3f, spread %.2f\n", time, angle,
+                    area / 0.0593723807167931 - 1.0, area / ideal - 1.0, scalar(*solver, "max_velocity"),
+                    scalar(*solver, "density_spread"));
+        std::fflush(stdout);
+        EXPECT_NEAR(angle, 120.0, 1.2);
+        EXPECT_NEAR(area / 0.0593723807167931, 1.0, 0.01);
+        EXPECT_NEAR(area / ideal, 1.0, 1e-3);
+    }
+}
+
+}  // namespace
+}  // namespace lamella::melp

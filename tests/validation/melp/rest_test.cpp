@@ -1,0 +1,101 @@
+// Bubbles at rest: Young and Laplace, drainage, equalisation. [method sheet 14: V1, V5, V6, V12]
+
+#include "../../unit/melp/bubbles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace lamella::melp {
+namespace {
+
+void advance_to(MelpSolver& solver, double time) {
+    while (solver.time() < time) solver.advance(time);
+}
+
+const double kFilmMass = 1000.0 * 5e-7;                                  // [kg/m^2]
+const double kWaveSpeed = std::sqrt(2.0 * kTension / kFilmMass);         // of the membrane [m/s]
+const double kArea = 4.0 * std::numbers::pi * kRadius * kRadius;
+
+TEST(Rest, HasThePressureOfYoungAndLaplace) {
+    auto solver = bubble(2562, "fine_ratio = 0\ntheta = 1.0");
+    advance_to(*solver, 0.2);
+    std::printf("pressure %.5f of 2 Pa, area %+.2e, volume %+.2e, speed / c %.1e\n", scalar(*solver, "gauge_pressure_1"),
+                scalar(*solver, "particle_area") / kArea - 1.0,
+                scalar(*solver, "particle_volume") / (kArea * kRadius / 3.0) - 1.0, scalar(*solver, "max_velocity") / kWaveSpeed);
+    EXPECT_NEAR(scalar(*solver, "gauge_pressure_1") / (4.0 * kTension / kRadius), 1.0, 0.01);
+    EXPECT_NEAR(scalar(*solver, "particle_area") / kArea, 1.0, 2e-3);
+    EXPECT_NEAR(scalar(*solver, "particle_volume") / (kArea * kRadius / 3.0), 1.0, 2e-3);
+    EXPECT_LT(scalar(*solver, "max_velocity") / kWaveSpeed, 1e-4);
+}
+
+/// Gravity pulls the liquid down until the surfactant that goes with it holds it: ln eta falls by rho g eta / (2 R T Gamma)
+/// per height, on a film of any shape; on a sphere the mean thickness is C sinh(k R) / (k R).
+TEST(Rest, DrainsToAnExponentialFilm) {
+    auto solver = bubble(1200, "floating = true\nair_drag = 1e-3\nsteps_per_period = 0.0\nlargest_step = 0.01", "gravity = [0.0, 0.0, -9.81]\n");
+    advance_to(*solver, 1.5);
+    const Geometry& g = solver->geometry();
+    double w = 0.0, z = 0.0, l = 0.0, zz = 0.0, zl = 0.0;
+    for (std::size_t i = 0; i < g.size(); ++i) {
+        const double height = solver->coarse().position[i][2], log = std::log(solver->films().thickness[i]);
+        w += g.area[i];
+        z += g.area[i] * height;
+        l += g.area[i] * log;
+        zz += g.area[i] * height * height;
+        zl += g.area[i] * height * log;
+    }
+    const double slope = -(zl - z * l / w) / (zz - z * z / w), center = z / w;
+    const double exact = kFilmMass * 9.81 / (2.0 * 8.31446261815324 * 298.15 * 1e-7);
+    const double x = exact * kRadius, middle = 5e-7 * x / std::sinh(x);
+    double square = 0.0;
+    for (std::size_t i = 0; i < g.size(); ++i) {
+        const double wanted = middle * std::exp(-exact * (solver->coarse().position[i][2] - center));
+        square += g.area[i] / w * std::pow(solver->films().thickness[i] / wanted - 1.0, 2);
+    }
+    std::printf("slope %.4f of it, thickness rms error %.4f, speed %.3f m/s\n", slope / exact, std::sqrt(square),
+                scalar(*solver, "max_velocity"));
+    EXPECT_NEAR(slope / exact, 1.0, 0.01);
+    EXPECT_LT(std::sqrt(square), 0.02);
+}
+
+TEST(Rest, EqualisesItsThickness) {
+    auto solver = bubble(1200, "start.thickness_noise = 0.8\nsteps_per_period = 0.0\nlargest_step = 0.0333333");
+    const double before = scalar(*solver, "film_thickness_deviation") / scalar(*solver, "film_thickness_mean");
+    advance_to(*solver, 1.0);
+    const double after = scalar(*solver, "film_thickness_deviation") / scalar(*solver, "film_thickness_mean");
+    std::printf("deviation / mean: %.4f -> %.5f\n", before, after);
+    EXPECT_GT(before, 0.05);
+    EXPECT_LT(after, 0.01);
+    EXPECT_LT(std::abs(scalar(*solver, "liquid_error")), 1e-12);
+    EXPECT_EQ(scalar(*solver, "strays"), 0.0);
+}
+
+/// Uneven liquid pulls itself even; nothing pushes the bubble as a whole.
+TEST(Rest, KeepsItsMomentum) {
+    auto solver = bubble(1200, "start.thickness_noise = 0.8\nsteps_per_period = 0.0\nlargest_step = 0.005");
+    advance_to(*solver, 0.3);
+    const double scale = kFilmMass * kArea * kWaveSpeed;
+    const double drift = std::max({std::abs(scalar(*solver, "momentum_x")), std::abs(scalar(*solver, "momentum_y")),
+                                   std::abs(scalar(*solver, "momentum_z"))}) / (0.3 * scale);
+    std::printf("momentum drift %.1e of m c per second\n", drift);
+    EXPECT_LT(drift, 1e-6);
+}
+
+TEST(Rest, FliesOnAtItsSpeed) {
+    for (const char* ratio : {"0", "16"}) {
+        auto solver = solver_of(std::string("[material]\nthickness = 5e-7\n[[bubble]]\nradius = 0.05\nvelocity = [0.5, 0.0, 0.2]\n"
+                                            "[resolution]\nedge_length = 0.005\n[melp]\nfine_ratio = ") + ratio);
+        solver->start({});
+        const double before = scalar(*solver, "momentum_x");
+        advance_to(*solver, 0.02);
+        std::printf("fine_ratio %s: momentum %+.1e relative\n", ratio, scalar(*solver, "momentum_x") / before - 1.0);
+        EXPECT_NEAR(scalar(*solver, "momentum_x") / before, 1.0, 1e-6);
+        Vec3 center;
+        for (const Vec3& x : solver->coarse().position) center += x / static_cast<double>(solver->coarse().size());
+        EXPECT_NEAR(center[0], 0.01, 1e-5);
+        EXPECT_NEAR(center[2], 0.004, 1e-5);
+    }
+}
+
+}  // namespace
+}  // namespace lamella::melp
