@@ -33,4 +33,17 @@ Surface film_surface(const mesh::FoamMesh& mesh) {
     return surface;
 }
 
+std::optional<Box> film_box(const mesh::FoamMesh& mesh) {
+    if (!mesh.periodic()) return {};
+    Box box;
+    for (std::size_t a = 0; a < 3; ++a) {
+        for (std::size_t k = 0; k < 3; ++k)
+            if (k != a && mesh.period[a][k] != 0.0) return {};
+        if (!(mesh.period[a][a] > 0.0)) return {};
+        box.lengths[a] = mesh.period[a][a];
+        box.periodic[a] = true;
+    }
+    return box;
+}
+
 }  // namespace lamella::sim

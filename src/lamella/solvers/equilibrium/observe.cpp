@@ -37,6 +37,7 @@ sim::Frame EquilibriumSolver::frame() const {
     frame.time = time_;
     frame.step = steps_;
     frame.surface = sim::film_surface(mesh);
+    frame.box = sim::film_box(mesh);
     sim::Surface& surface = frame.surface;
     const double tension = input_.films->material.film_tension();
     sim::Field jump{"pressure_difference", "Pa", 1, false, {}};
