@@ -64,7 +64,7 @@ std::vector<double> scalar_values(const sim::Field& field) {
 
 ColorScale scale_for(const sim::Field& field, const std::vector<double>& values) {
     ColorScale scale;
-    scale.name = field.components == 1 ? field.name : "length of " + field.name;
+    scale.name = field.components == 1 ? field.name : "|" + field.name + "|";
     scale.unit = field.unit;
     scale.low = std::numeric_limits<double>::infinity();
     scale.high = -scale.low;
