@@ -169,10 +169,11 @@ std::string material_json(const DrawnPart& part, const sim::Surface& surface) {
     for (const double h : detail::part_values(part, *thickness)) mean += h / static_cast<double>(part.source.size());
     return fmt::format(
         "{{\"name\":{},\"doubleSided\":true,\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{{\"baseColorFactor\":"
-        "[1,1,1,0.3],\"metallicFactor\":0,\"roughnessFactor\":0}},\"extensions\":{{\"KHR_materials_ior\":{{\"ior\":"
-        "1.33}},\"KHR_materials_iridescence\":{{\"iridescenceFactor\":1,\"iridescenceIor\":1.33,"
-        "\"iridescenceThicknessMinimum\":{:.6g},\"iridescenceThicknessMaximum\":{:.6g}}}}}}}",
-        quoted(part.name), mean, mean);
+        "[1,1,1,0.3],\"metallicFactor\":0,\"roughnessFactor\":0}},\"extensions\":{{\"KHR_materials_ior\":{{\"ior\":1."
+        "33}},"
+        "\"KHR_materials_iridescence\":{{\"iridescenceFactor\":1,\"iridescenceIor\":1.33,"
+        "\"iridescenceThicknessMaximum\":{:.6g}}}}}}}",
+        quoted(part.name), mean);
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(Glb, HoldsEachFilmWithItsFieldsAndMaterial) {
     const GlbParts parts = parts_of(text_of(io::write_glb, two_films()));
     for (const char* text :
          {R"("name":"film_0_1")", R"("name":"film_0_2")", R"("region_back":0,"region_front":2)", R"("_THICKNESS_NM":2)",
-          R"("iridescenceThicknessMaximum":200})", R"("iridescenceThicknessMaximum":300})", R"("time":0.5)"})
+          R"("iridescenceThicknessMaximum":200}})", R"("iridescenceThicknessMaximum":300}})", R"("time":0.5)"})
         EXPECT_TRUE(holds(parts.json, text)) << text << " in " << parts.json;
     // First film: places, normals, thicknesses, linear colors; (x, y, z) stands as (x, z, -y).
     const std::vector<float> expected{0, 0, 0, 1,   0,   0,   0, 0, -2, 0, 1, 0, 0, 1, 0,
