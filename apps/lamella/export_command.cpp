@@ -77,7 +77,8 @@ std::vector<std::size_t> chosen_frames(const RunReader& run, double rate) {
         return chosen;
     }
     const double first = frames.front().time, span = frames.back().time - first;
-    if (span * rate > 1e6) throw InputError(fmt::format("--rate {:g} makes {:.3g} frames; at most 1e6 are written", rate, span * rate));
+    if (span * rate > 1e6)
+        throw InputError(fmt::format("--rate {:g} makes {:.3g} frames; at most 1e6 are written", rate, span * rate));
     for (std::size_t k = 0, i = 0; static_cast<double>(k) <= span * rate * (1.0 + 1e-9); ++k) {
         const double time = first + static_cast<double>(k) / rate;
         while (i + 1 < frames.size() && std::abs(frames[i + 1].time - time) <= std::abs(frames[i].time - time)) ++i;
@@ -133,12 +134,17 @@ void add_export_command(CLI::App& app) {
         ->add_option("--out", options->out,
                      "File for one frame (-: standard output), folder for all; by default RUN/export")
         ->type_name("PATH");
-    command->add_flag("--baked", options->baked,
-                      "For drawing: films cut apart along borders, with normals, thickness [nm] (assumed where it is not known, "
-                      "as by render) and color; glb and usda always are");
-    command->add_option("--field", options->field, "Bake colors of this field instead of those of light")->type_name("NAME");
-    command->add_option("--rate", options->rate, "Frames per unit of simulated time, the nearest of each; by default all there are")
-        ->check(CLI::Range(1e-9, 1e12))->type_name("R");
+    command->add_flag(
+        "--baked", options->baked,
+        "For drawing: films cut apart along borders, with normals, thickness [nm] (assumed where it is not known, "
+        "as by render) and color; glb and usda always are");
+    command->add_option("--field", options->field, "Bake colors of this field instead of those of light")
+        ->type_name("NAME");
+    command
+        ->add_option("--rate", options->rate,
+                     "Frames per unit of simulated time, the nearest of each; by default all there are")
+        ->check(CLI::Range(1e-9, 1e12))
+        ->type_name("R");
     command->callback([options] {
         try {
             export_run(*options);

@@ -17,7 +17,9 @@ extern char** environ;  // POSIX has it in no header
 
 namespace lamella::app {
 
-int run_external(const std::vector<std::string>& words, const std::filesystem::path& messages, const std::string& missing) {
+int run_external(const std::vector<std::string>& words,
+                 const std::filesystem::path& messages,
+                 const std::string& missing) {
     posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
     ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);

@@ -30,12 +30,17 @@ sim::Frame start_of_scene(const std::string& name) {
 
 PictureSource::PictureSource(const std::string& source) : name_(fs::path(source).stem().string()) {
     const fs::path path(source);
-    if (fs::is_directory(path)) run_.emplace(path);
-    else if (path.extension() == ".vtp") single_ = io::read_vtp(path);
-    else if (io::is_film_file(path)) single_.surface = sim::film_surface(io::read_films(path).mesh);
+    if (fs::is_directory(path))
+        run_.emplace(path);
+    else if (path.extension() == ".vtp")
+        single_ = io::read_vtp(path);
+    else if (io::is_film_file(path))
+        single_.surface = sim::film_surface(io::read_films(path).mesh);
     else if (fs::exists(path) && path.extension() != ".toml")
-        throw InputError(fmt::format("{}: a run folder, a scene or a .vtp, .ply, .obj or .fe file is expected", source));
-    else single_ = start_of_scene(source);
+        throw InputError(
+            fmt::format("{}: a run folder, a scene or a .vtp, .ply, .obj or .fe file is expected", source));
+    else
+        single_ = start_of_scene(source);
 }
 
 std::vector<std::size_t> PictureSource::chosen(const std::string& text) const {

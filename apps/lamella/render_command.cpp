@@ -37,6 +37,7 @@ struct RenderOptions {
     std::string thickness;
     std::string out;
     std::string video;
+    std::string format = "png";
     double rate = 30.0;
     int images = 2;
     std::string period;
@@ -59,9 +60,11 @@ void read_size(const std::string& text, render::PictureOptions* picture) {
     const std::string what = fmt::format("--size {} is no size such as 1920x1080", text);
     const std::size_t x = text.find('x');
     if (x == std::string::npos) throw InputError(what);
-    for (const auto& [part, target] : {std::pair(text.substr(0, x), &picture->width), {text.substr(x + 1), &picture->height}}) {
+    for (const auto& [part, target] :
+         {std::pair(text.substr(0, x), &picture->width), {text.substr(x + 1), &picture->height}}) {
         const double value = number(part, what);
-        if (value < 1.0 || value != std::floor(value) || value > 16384.0) throw InputError(what + ", each at most 16384");
+        if (value < 1.0 || value != std::floor(value) || value > 16384.0)
+            throw InputError(what + ", each at most 16384");
         *target = static_cast<std::size_t>(value);
     }
 }
@@ -138,16 +141,34 @@ void write_picture(const fs::path& path, const render::Picture& picture, const R
 }
 
 /// What a picture shows and how it was made, for the file beside it.
-nlohmann::ordered_json notes_on(const fs::path& path, const sim::Frame& frame, const render::Picture& picture, const RenderOptions& options) {
+nlohmann::ordered_json notes_on(const fs::path& path,
+                                const sim::Frame& frame,
+                                const render::Picture& picture,
+                                const RenderOptions& options) {
     const render::PictureOptions& o = options.picture;
-    nlohmann::ordered_json notes{{"picture", path.filename().string()}, {"lamella", build_info().version}, {"source", options.source},
-                                 {"solver", frame.solver}, {"time", frame.time}, {"time_unit", frame.time_unit},
-                                 {"thickness", picture.thickness_origin}, {"width", o.width}, {"height", o.height},
-                                 {"samples", o.samples}, {"seed", o.seed}, {"environment", o.environment},
-                                 {"background", o.background}, {"ground", o.ground}, {"exposure", o.exposure},
-                                 {"camera", {{"azimuth_deg", o.view.azimuth_deg}, {"elevation_deg", o.view.elevation_deg}, {"zoom", o.view.zoom}}}};
+    nlohmann::ordered_json notes{
+        {"picture", path.filename().string()},
+        {"lamella", build_info().version},
+        {"source", options.source},
+        {"solver", frame.solver},
+        {"time", frame.time},
+        {"time_unit", frame.time_unit},
+        {"thickness", picture.thickness_origin},
+        {"width", o.width},
+        {"height", o.height},
+        {"samples", o.samples},
+        {"seed", o.seed},
+        {"environment", o.environment},
+        {"background", o.background},
+        {"ground", o.ground},
+        {"exposure", o.exposure},
+        {"camera",
+         {{"azimuth_deg", o.view.azimuth_deg}, {"elevation_deg", o.view.elevation_deg}, {"zoom", o.view.zoom}}}};
     if (picture.scale)
-        notes["field"] = {{"name", picture.scale->name}, {"unit", picture.scale->unit}, {"low", picture.scale->low}, {"high", picture.scale->high}};
+        notes["field"] = {{"name", picture.scale->name},
+                          {"unit", picture.scale->unit},
+                          {"low", picture.scale->low},
+                          {"high", picture.scale->high}};
     return notes;
 }
 
@@ -161,13 +182,33 @@ void check_suffix(const fs::path& path) {
 void make_video(const fs::path& folder, const RenderOptions& options) {
     const fs::path video(options.video), unfinished = video.string() + ".part.mp4", messages = folder / "ffmpeg.log";
     const int status = run_external(
-        {"ffmpeg", "-nostdin", "-loglevel", "error", "-y", "-framerate", fmt::format("{:g}", options.rate), "-i",
-         (folder / "%06d.png").string(), "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "16", "-pix_fmt",
-         "yuv420p", "-movflags", "+faststart", unfinished.string()},
+        {"ffmpeg",
+         "-nostdin",
+         "-loglevel",
+         "error",
+         "-y",
+         "-framerate",
+         fmt::format("{:g}", options.rate),
+         "-i",
+         (folder / "%06d.png").string(),
+         "-vf",
+         "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+         "-c:v",
+         "libx264",
+         "-crf",
+         "16",
+         "-pix_fmt",
+         "yuv420p",
+         "-movflags",
+         "+faststart",
+         unfinished.string()},
         messages,
-        fmt::format("ffmpeg is needed for a film and is not on the PATH (Debian: apt install ffmpeg); the pictures are in {}",
-                    folder.string()));
-    if (status != 0) throw IoError(fmt::format("ffmpeg could not make {}: {}; the pictures are in {}", options.video, last_line(messages), folder.string()));
+        fmt::format(
+            "ffmpeg is needed for a film and is not on the PATH (Debian: apt install ffmpeg); the pictures are in {}",
+            folder.string()));
+    if (status != 0)
+        throw IoError(fmt::format("ffmpeg could not make {}: {}; the pictures are in {}", options.video,
+                                  last_line(messages), folder.string()));
     fs::rename(unfinished, video);
     fs::remove(messages);
 }
@@ -194,20 +235,30 @@ void complete(const PictureSource& source, const std::vector<std::size_t>& chose
 }
 
 /// The file of each chosen frame.
-std::vector<fs::path> picture_files(const PictureSource& source, const std::vector<std::size_t>& chosen, const RenderOptions& options) {
+std::vector<fs::path> picture_files(const PictureSource& source,
+                                    const std::vector<std::size_t>& chosen,
+                                    const RenderOptions& options) {
     if (options.frame != "all" && !options.out.empty()) {
         check_suffix(options.out);
         return {options.out};
     }
     const fs::path folder = options.out.empty() ? source.default_folder() : fs::path(options.out);
+    if (folder.extension() == ".png" || folder.extension() == ".exr")
+        throw InputError(
+            fmt::format("{}: pictures of several frames go into a folder; --frame chooses one", options.out));
+    if (options.format == "exr" && !options.video.empty())
+        throw InputError("a film is made of .png pictures, not of .exr");
     std::vector<fs::path> files;
-    for (const std::size_t index : chosen) files.push_back(folder / (source.picture_name(index) + ".png"));
+    for (const std::size_t index : chosen)
+        files.push_back(folder / (source.picture_name(index) + "." + options.format));
+    check_suffix(files[0]);
     return files;
 }
 
 void render_sequence(RenderOptions options) {
     if (!render::can_render())
-        throw InputError("this lamella was built without Embree, which pictures need; install libembree-dev and build again");
+        throw InputError(
+            "this lamella was built without Embree, which pictures need; install libembree-dev and build again");
     if (!options.video.empty()) options.frame = "all";
     const PictureSource source(options.source);
     const std::vector<std::size_t> chosen = source.chosen(options.frame);
@@ -235,44 +286,82 @@ void render_sequence(RenderOptions options) {
     display.clear();
     const bool one = chosen.size() == 1;
     const fs::path beside = one ? fs::path(files[0]).replace_extension(".json") : folder / "pictures.json";
-    io::write_file_atomically(beside, (one ? notes[0] : notes).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    io::write_file_atomically(
+        beside, (one ? notes[0] : notes).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
     if (!options.video.empty()) make_video(folder, options);
-    fmt::print(stderr, "{}\n", !options.video.empty() ? options.video : one ? files[0].string() : fmt::format("{} pictures in {}", files.size(), folder.string()));
+    fmt::print(stderr, "{}\n",
+               !options.video.empty() ? options.video
+               : one                  ? files[0].string()
+                                      : fmt::format("{} pictures in {}", files.size(), folder.string()));
 }
 
 }  // namespace
 
 void add_render_command(CLI::App& app, int& exit_code) {
-    CLI::App* command =
-        add_command(app, "render", "Make pictures of frames by following rays of light",
-                    "  lamella render foam                                        RUN/pictures/000060.png, the last frame\n"
-                    "  lamella render foam --size 1920x1080 --samples 64 --out foam.png\n"
-                    "  lamella render foam --video foam.mp4                       all frames as a film (needs ffmpeg)\n"
-                    "  lamella render foam --field velocity --camera 30,45        colored by a field, from elsewhere\n"
-                    "  lamella render foam --background transparent --out a.exr   for further work\n");
+    CLI::App* command = add_command(
+        app, "render", "Make pictures of frames by following rays of light",
+        "  lamella render foam                                        RUN/pictures/000060.png, the last frame\n"
+        "  lamella render foam --size 1920x1080 --samples 64 --out foam.png\n"
+        "  lamella render foam --video foam.mp4                       all frames as a film (needs ffmpeg)\n"
+        "  lamella render foam --field velocity --camera 30,45        colored by a field, from elsewhere\n"
+        "  lamella render foam --background transparent --out a.exr   for further work\n");
     auto options = std::make_shared<RenderOptions>();
     render::PictureOptions& picture = options->picture;
-    command->add_option("source", options->source, "Run folder; a frame (.vtp) or films (.ply, .obj, .fe); or a scene, of which the start is drawn")->required()->type_name("RUN|FILE|SCENE");
+    command
+        ->add_option("source", options->source,
+                     "Run folder; a frame (.vtp) or films (.ply, .obj, .fe); or a scene, of which the start is drawn")
+        ->required()
+        ->type_name("RUN|FILE|SCENE");
     command->add_option("--frame", options->frame, "A number, last or all")->type_name("N|last|all");
     command->add_option("--size", options->size, "In pixels; by default 960x720")->type_name("WxH");
-    command->add_option("--samples", picture.samples, "Rays per pixel; by default 16, noise falls with the root of it")->type_name("N");
-    command->add_option("--out", options->out, "Picture (.png, .exr) of one frame, folder of several; by default RUN/pictures")->type_name("PATH");
+    command->add_option("--samples", picture.samples, "Rays per pixel; by default 16, noise falls with the root of it")
+        ->type_name("N");
+    command
+        ->add_option("--out", options->out,
+                     "Picture (.png, .exr) of one frame, folder of several; by default RUN/pictures")
+        ->type_name("PATH");
+    command->add_option("--format", options->format, "Of pictures that get their names by themselves: png or exr")
+        ->check(CLI::IsMember({"png", "exr"}))
+        ->type_name("NAME");
     command->add_option("--video", options->video, "Join all frames into a film")->type_name("FILE.mp4");
-    command->add_option("--rate", options->rate, "Of the film, pictures per second; by default 30")->check(CLI::Range(0.1, 1000.0))->type_name("R");
-    command->add_option("--field", picture.field, "Color films or balls by this field, with a legend")->type_name("NAME");
-    command->add_option("--camera", options->camera, "Where it stands, in degrees, and how near; by default -62,16,1")->type_name("AZIMUTH,ELEVATION[,ZOOM]");
-    command->add_option("--background", picture.background, "dark, light, transparent, environment, or a color")->type_name("NAME|#RRGGBB");
-    command->add_option("--environment", picture.environment, "Light: studio, window, daylight, gray, or a picture of light")->type_name("NAME|FILE.hdr|FILE.exr");
+    command->add_option("--rate", options->rate, "Of the film, pictures per second; by default 30")
+        ->check(CLI::Range(0.1, 1000.0))
+        ->type_name("R");
+    command->add_option("--field", picture.field, "Color films or balls by this field, with a legend")
+        ->type_name("NAME");
+    command->add_option("--camera", options->camera, "Where it stands, in degrees, and how near; by default -62,16,1")
+        ->type_name("AZIMUTH,ELEVATION[,ZOOM]");
+    command->add_option("--background", picture.background, "dark, light, transparent, environment, or a color")
+        ->type_name("NAME|#RRGGBB");
+    command
+        ->add_option("--environment", picture.environment,
+                     "Light: studio, window, daylight, gray, or a picture of light")
+        ->type_name("NAME|FILE.hdr|FILE.exr");
     command->add_flag("--ground", picture.ground, "A polished table under everything");
-    command->add_option("--thickness", options->thickness, "Of all films, e.g. \"350 nm\". By default the frame's; films of which it is not known are drawn as if they had drained for a while: thin above, thick below (assumed; the .json beside the picture says so)")->type_name("LENGTH");
-    command->add_option("--borders", picture.border_width, "Width of Plateau borders and wires, 1 as usual, 0 none")->type_name("F");
-    command->add_option("--images", options->images, "Of films in a periodic box, along each axis; by default 2")->check(CLI::Range(1, 8))->type_name("N");
-    command->add_option("--period", options->period, "Lengths of the periodic box, for films whose frames have none")->type_name("X,Y,Z");
+    command
+        ->add_option(
+            "--thickness", options->thickness,
+            "Of all films, e.g. \"350 nm\". By default the frame's; films of which it is not known are drawn as if "
+            "they had drained for a while: thin above, thick below (assumed; the .json beside the picture says so)")
+        ->type_name("LENGTH");
+    command->add_option("--borders", picture.border_width, "Width of Plateau borders and wires, 1 as usual, 0 none")
+        ->type_name("F");
+    command->add_option("--images", options->images, "Of films in a periodic box, along each axis; by default 2")
+        ->check(CLI::Range(1, 8))
+        ->type_name("N");
+    command->add_option("--period", options->period, "Lengths of the periodic box, for films whose frames have none")
+        ->type_name("X,Y,Z");
     command->add_option("--exposure", picture.exposure, "Multiplies all light; by default 1")->type_name("F");
     command->add_option("--seed", picture.seed, "Of the noise")->type_name("N");
-    command->add_option("--bits", options->bits, "Per channel of a .png: 8 or 16")->check(CLI::IsMember({8, 16}))->type_name("N");
-    command->add_option("--threads", options->threads, "0: as many as there are cores")->check(CLI::Range(0, 4096))->type_name("N");
-    command->add_option("--progress", options->progress, "bar, plain or none")->check(CLI::IsMember({"bar", "plain", "none"}))->type_name("STYLE");
+    command->add_option("--bits", options->bits, "Per channel of a .png: 8 or 16")
+        ->check(CLI::IsMember({8, 16}))
+        ->type_name("N");
+    command->add_option("--threads", options->threads, "0: as many as there are cores")
+        ->check(CLI::Range(0, 4096))
+        ->type_name("N");
+    command->add_option("--progress", options->progress, "bar, plain or none")
+        ->check(CLI::IsMember({"bar", "plain", "none"}))
+        ->type_name("STYLE");
     command->callback([options, &exit_code] {
         catch_stop_signals();
         try {

@@ -10,7 +10,7 @@ usage: docs/gallery/make.sh [--program FILE] [--runs DIR] [--size WxH] [--sample
 
 Runs the scenes of the gallery, renders them into docs/gallery/NAME.jpg and writes docs/gallery/README.md.
 
-  NAME             only these pictures (and no page)
+  NAME             only these pictures, and the page
   --program FILE   lamella (default: build/release/bin/lamella)
   --runs DIR       where runs are kept, and used again if they are there (default: runs/gallery)
   --size WxH       of the pictures (default: 640x480)
@@ -91,8 +91,6 @@ while IFS='|' read -r name scene frame options text; do
         $options </dev/null
     ffmpeg -nostdin -loglevel error -y -i "$runs/$name.png" -q:v 2 "$here/$name.jpg"
 done < <(pictures)
-[ ${#chosen[@]} -eq 0 ] || exit 0
-
 {
     echo "# Gallery"
     echo

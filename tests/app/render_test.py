@@ -108,9 +108,11 @@ class Pictures(ProgramTest):
     def test_can_be_openexr(self):
         if "exr" not in lamella("version").stdout:
             self.skipTest("built without OpenEXR")
-        out = self.folder / "film.exr"
-        self.render(self.films(), "--out", out)
+        run, out = self.films(), self.folder / "film.exr"
+        self.render(run, "--out", out)
         self.assertEqual(out.read_bytes()[:4], b"\x76\x2f\x31\x01")
+        self.render(run, "--frame", "all", "--format", "exr", "--out", self.folder / "sequence")
+        self.assertTrue((self.folder / "sequence" / "000000.exr").exists())
 
     def test_of_a_foam_show_a_field_with_a_legend(self):
         run = self.foam()
@@ -152,7 +154,9 @@ class Pictures(ProgramTest):
                                  (("--field", "presure"), "no field presure"), (("--environment", "studoi"), "did you mean studio?"),
                                  (("--background", "blue"), "#1a2b3c"), (("--out", "a.bmp"), ".png or .exr"),
                                  (("--frame", "900"), "900"), (("--thickness", "3 kg"), "3 kg"), (("--video", "a.avi"), ".mp4"),
-                                 (("--samples", "0"), "samples"), (("--environment", "no.hdr"), "")):
+                                 (("--samples", "0"), "samples"),
+                                 (("--frame", "all", "--out", "a.png"), "folder"), (("--period", "1,2"), "X,Y,Z"),
+                                 (("--video", "a.mp4", "--format", "exr"), ".png"), (("--environment", "no.hdr"), "")):
             result = lamella("render", run, *arguments, "--progress", "none", cwd=self.folder)
             if words:
                 self.assert_refused(result, words)

@@ -1,5 +1,5 @@
-// Binary glTF 2.0 (GLB): one mesh per film, for Blender, three.js, game engines. y points up there: (x, y, z) is written as
-// (x, z, -y). [Khronos glTF 2.0; extensions KHR_materials_iridescence, KHR_materials_ior]
+// Binary glTF 2.0 (GLB): one mesh per film, for Blender, three.js, game engines. y points up there: (x, y, z) is
+// written as (x, z, -y). [Khronos glTF 2.0; extensions KHR_materials_iridescence, KHR_materials_ior]
 
 #include "lamella/core/error.h"
 #include "lamella/io/atomic_file.h"
@@ -50,18 +50,23 @@ public:
             extra = fmt::format(",\"min\":[{}],\"max\":[{}]", fmt::join(low, ","), fmt::join(high, ","));
         }
         return add(numbers.data(), sizeof(float) * numbers.size(), 34962, 5126, numbers.size() / n,
-                   n == 1 ? "SCALAR" : n == 2 ? "VEC2" : "VEC3", extra);
+                   n == 1   ? "SCALAR"
+                   : n == 2 ? "VEC2"
+                            : "VEC3",
+                   extra);
     }
 
     std::size_t add_triangles(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-        return add(triangles.data(), sizeof(triangles[0]) * triangles.size(), 34963, 5125, 3 * triangles.size(), "SCALAR", "");
+        return add(triangles.data(), sizeof(triangles[0]) * triangles.size(), 34963, 5125, 3 * triangles.size(),
+                   "SCALAR", "");
     }
 
     /// Header, JSON and binary chunk.
     std::string file(const std::string& rest) const {
-        std::string json = fmt::format("{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"lamella\"}},{},\"accessors\":[{}],"
-                                       "\"bufferViews\":[{}],\"buffers\":[{{\"byteLength\":{}}}]}}",
-                                       rest, accessors_, views_, bytes_.size());
+        std::string json = fmt::format(
+            "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"lamella\"}},{},\"accessors\":[{}],"
+            "\"bufferViews\":[{}],\"buffers\":[{{\"byteLength\":{}}}]}}",
+            rest, accessors_, views_, bytes_.size());
         while (json.size() % 4 != 0) json += ' ';
         std::string out = "glTF";
         append(out, 2, 12 + 8 + json.size() + 8 + bytes_.size(), json.size());
@@ -75,15 +80,22 @@ private:
     template <class... Number>
     static void append(std::string& out, Number... numbers) {
         for (const std::size_t number : {static_cast<std::size_t>(numbers)...}) {
-            if (number > std::numeric_limits<std::uint32_t>::max()) throw InputError("GLB files end at 4 GiB; the frame needs more");
+            if (number > std::numeric_limits<std::uint32_t>::max())
+                throw InputError("GLB files end at 4 GiB; the frame needs more");
             const auto narrow = static_cast<std::uint32_t>(number);
             out.append(reinterpret_cast<const char*>(&narrow), sizeof narrow);
         }
     }
 
-    std::size_t add(const void* data, std::size_t size, int target, int type, std::size_t count, const char* shape, const std::string& extra) {
-        views_ += fmt::format("{}{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":{}}}", number_ == 0 ? "" : ",",
-                              bytes_.size(), size, target);
+    std::size_t add(const void* data,
+                    std::size_t size,
+                    int target,
+                    int type,
+                    std::size_t count,
+                    const char* shape,
+                    const std::string& extra) {
+        views_ += fmt::format("{}{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{},\"target\":{}}}",
+                              number_ == 0 ? "" : ",", bytes_.size(), size, target);
         accessors_ += fmt::format("{}{{\"bufferView\":{},\"componentType\":{},\"count\":{},\"type\":\"{}\"{}}}",
                                   number_ == 0 ? "" : ",", number_, type, count, shape, extra);
         bytes_.append(static_cast<const char*>(data), size);
@@ -112,7 +124,9 @@ std::vector<double> flattened(const std::vector<Vec3>& vectors) {
 std::string attribute_name(const std::string& name) {
     std::string out = "_";
     for (const char c : name)
-        out += std::isalnum(static_cast<unsigned char>(c)) != 0 ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : '_';
+        out += std::isalnum(static_cast<unsigned char>(c)) != 0
+                   ? static_cast<char>(std::toupper(static_cast<unsigned char>(c)))
+                   : '_';
     return out;
 }
 
@@ -129,29 +143,37 @@ std::string add_field(Glb& glb, const DrawnPart& part, const sim::Field& field) 
 
 std::string mesh_json(Glb& glb, const DrawnPart& part, const std::vector<sim::Field>& fields, std::size_t material) {
     std::string attributes = fmt::format("\"POSITION\":{}", glb.add_floats(y_up(flattened(part.position)), 3, true));
-    if (!part.normal.empty()) attributes += fmt::format(",\"NORMAL\":{}", glb.add_floats(y_up(flattened(part.normal)), 3, false));
+    if (!part.normal.empty())
+        attributes += fmt::format(",\"NORMAL\":{}", glb.add_floats(y_up(flattened(part.normal)), 3, false));
     for (const sim::Field& field : fields)
         if (field.components == 1 || field.components == 3) attributes += add_field(glb, part, field);
-    const std::string faces = part.triangles.empty() ? "\"mode\":0" : fmt::format("\"indices\":{}", glb.add_triangles(part.triangles));
-    const std::string extras = part.regions[0] < 0 ? "" : fmt::format(",\"extras\":{{\"region_back\":{},\"region_front\":{}}}",
-                                                                        part.regions[0], part.regions[1]);
-    return fmt::format("{{\"name\":{},\"primitives\":[{{\"attributes\":{{{}}},{},\"material\":{}}}]{}}}", quoted(part.name),
-                       attributes, faces, material, extras);
+    const std::string faces =
+        part.triangles.empty() ? "\"mode\":0" : fmt::format("\"indices\":{}", glb.add_triangles(part.triangles));
+    const std::string extras =
+        part.regions[0] < 0
+            ? ""
+            : fmt::format(",\"extras\":{{\"region_back\":{},\"region_front\":{}}}", part.regions[0], part.regions[1]);
+    return fmt::format("{{\"name\":{},\"primitives\":[{{\"attributes\":{{{}}},{},\"material\":{}}}]{}}}",
+                       quoted(part.name), attributes, faces, material, extras);
 }
 
 /// Clear films with interference for their mean thickness, where it is known; balls are plain.
 std::string material_json(const DrawnPart& part, const sim::Surface& surface) {
     const sim::Field* thickness = surface.find_of_vertices("thickness_nm");
     if (part.regions[0] < 0 || thickness == nullptr)
-        return fmt::format("{{\"name\":{},\"doubleSided\":true,\"pbrMetallicRoughness\":{{\"metallicFactor\":0,"
-                           "\"roughnessFactor\":0.4}}}}", quoted(part.name));
+        return fmt::format(
+            "{{\"name\":{},\"doubleSided\":true,\"pbrMetallicRoughness\":{{\"metallicFactor\":0,"
+            "\"roughnessFactor\":0.4}}}}",
+            quoted(part.name));
     double mean = 0.0;
     for (const double h : detail::part_values(part, *thickness)) mean += h / static_cast<double>(part.source.size());
-    return fmt::format("{{\"name\":{},\"doubleSided\":true,\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{{\"baseColorFactor\":"
-                       "[1,1,1,0.3],\"metallicFactor\":0,\"roughnessFactor\":0}},\"extensions\":{{\"KHR_materials_ior\":{{\"ior\":"
-                       "1.33}},\"KHR_materials_iridescence\":{{\"iridescenceFactor\":1,\"iridescenceIor\":1.33,"
-                       "\"iridescenceThicknessMinimum\":{:.6g},\"iridescenceThicknessMaximum\":{:.6g}}}}}}}",
-                       quoted(part.name), mean, mean);
+    return fmt::format(
+        "{{\"name\":{},\"doubleSided\":true,\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{{\"baseColorFactor\":"
+        "[1,1,1,0.3],\"metallicFactor\":0,\"roughnessFactor\":0}},\"extensions\":{{\"KHR_materials_ior\":{{\"ior\":1."
+        "33}},"
+        "\"KHR_materials_iridescence\":{{\"iridescenceFactor\":1,\"iridescenceIor\":1.33,"
+        "\"iridescenceThicknessMaximum\":{:.6g}}}}}}}",
+        quoted(part.name), mean);
 }
 
 }  // namespace
@@ -172,10 +194,11 @@ void write_glb(std::ostream& out, const sim::Frame& frame) {
     }
     const bool films = materials.find("KHR_materials_iridescence") != std::string::npos;
     out << glb.file(fmt::format(
-        "{}\"scene\":0,\"scenes\":[{{\"nodes\":[{}],\"extras\":{{\"solver\":{},\"time\":{},\"time_unit\":{}}}}}],\"nodes\":[{}],"
+        "{}\"scene\":0,\"scenes\":[{{\"nodes\":[{}],\"extras\":{{\"solver\":{},\"time\":{},\"time_unit\":{}}}}}],"
+        "\"nodes\":[{}],"
         "\"meshes\":[{}],\"materials\":[{}]",
-        films ? "\"extensionsUsed\":[\"KHR_materials_ior\",\"KHR_materials_iridescence\"]," : "", numbers, quoted(frame.solver),
-        shortest_text(frame.time), quoted(frame.time_unit), nodes, meshes, materials));
+        films ? "\"extensionsUsed\":[\"KHR_materials_ior\",\"KHR_materials_iridescence\"]," : "", numbers,
+        quoted(frame.solver), shortest_text(frame.time), quoted(frame.time_unit), nodes, meshes, materials));
     detail::finish(out);
 }
 

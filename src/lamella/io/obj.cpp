@@ -28,14 +28,16 @@ void write_vertices(std::ostream& stream, const sim::Surface& s) {
     for (std::size_t v = 0; v < s.position.size(); ++v) {
         const Vec3& x = s.position[v];
         fmt::format_to(out, "v {:.17g} {:.17g} {:.17g}", x[0], x[1], x[2]);
-        for (std::size_t k = 0; color != nullptr && k < 3; ++k) fmt::format_to(out, " {:.4g}", color->values[3 * v + k] / 255.0);
+        for (std::size_t k = 0; color != nullptr && k < 3; ++k)
+            fmt::format_to(out, " {:.4g}", color->values[3 * v + k] / 255.0);
         stream << '\n';
     }
     if (const sim::Field* thickness = field_of(s, "thickness_nm", 1))
         for (const double nm : thickness->values) fmt::format_to(out, "vt {:.6g} 0\n", 1e-3 * nm);
     if (const sim::Field* normal = field_of(s, "normal", 3))
         for (std::size_t v = 0; v < s.position.size(); ++v)
-            fmt::format_to(out, "vn {:.6g} {:.6g} {:.6g}\n", normal->values[3 * v], normal->values[3 * v + 1], normal->values[3 * v + 2]);
+            fmt::format_to(out, "vn {:.6g} {:.6g} {:.6g}\n", normal->values[3 * v], normal->values[3 * v + 1],
+                           normal->values[3 * v + 2]);
 }
 
 /// Vertices on wires as points of a group `wire`: programs that draw faces leave them out.

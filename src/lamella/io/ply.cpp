@@ -59,10 +59,12 @@ void add_properties(std::vector<Property>& list,
                     int components,
                     std::span<const double> values) {
     const bool color = integer && name == "color" && components == 3 && are_bytes(values);
-    const Property::Type type = color ? Property::kByte : integer && fits_32_bit(values) ? Property::kInt : Property::kDouble;
+    const Property::Type type = color                            ? Property::kByte
+                                : integer && fits_32_bit(values) ? Property::kInt
+                                                                 : Property::kDouble;
     for (int k = 0; k < components; ++k) {
-        list.push_back({known_name(name, components, k).value_or(ply_word(detail::component_name(name, components, k))), type,
-                        values, static_cast<std::size_t>(components), static_cast<std::size_t>(k)});
+        list.push_back({known_name(name, components, k).value_or(ply_word(detail::component_name(name, components, k))),
+                        type, values, static_cast<std::size_t>(components), static_cast<std::size_t>(k)});
     }
 }
 
@@ -75,9 +77,15 @@ void append_properties(std::string& out, const std::vector<Property>& properties
     for (const Property& p : properties) {
         const double value = p.values[item * p.stride + p.offset];
         switch (p.type) {
-            case Property::kByte: append_bytes(out, static_cast<std::uint8_t>(value)); break;
-            case Property::kInt: append_bytes(out, static_cast<std::int32_t>(value)); break;
-            case Property::kDouble: append_bytes(out, value); break;
+            case Property::kByte:
+                append_bytes(out, static_cast<std::uint8_t>(value));
+                break;
+            case Property::kInt:
+                append_bytes(out, static_cast<std::int32_t>(value));
+                break;
+            case Property::kDouble:
+                append_bytes(out, value);
+                break;
         }
     }
 }

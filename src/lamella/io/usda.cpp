@@ -1,5 +1,5 @@
-// USD as text (.usda): films as one Mesh with its fields as primvars, balls as Points with widths; for Houdini, Blender,
-// Omniverse.
+// USD as text (.usda): films as one Mesh with its fields as primvars, balls as Points with widths; for Houdini,
+// Blender, Omniverse.
 
 #include "lamella/core/error.h"
 #include "lamella/io/atomic_file.h"
@@ -26,8 +26,12 @@ std::string usd_name(const std::string& name) {
 }
 
 /// "    TYPE NAME = [...] (interpolation = ...)" with one row of `components` values for each item.
-void write_list(std::ostream& out, const std::string& declaration, std::size_t count, int components,
-                const std::function<double(std::size_t)>& value, const std::string& interpolation = {}) {
+void write_list(std::ostream& out,
+                const std::string& declaration,
+                std::size_t count,
+                int components,
+                const std::function<double(std::size_t)>& value,
+                const std::string& interpolation = {}) {
     out << "        " << declaration << " = [";
     const auto n = static_cast<std::size_t>(components);
     detail::write_rows(out, count, [&](std::string& row, std::size_t i) {
@@ -47,11 +51,14 @@ void write_field(std::ostream& out, const sim::Field& field, std::size_t count, 
     if (field.name == "normal" && field.components == 3)
         return write_list(out, "normal3f[] normals", count, 3, value, interpolation);
     if (field.name == "color" && field.components == 3)
-        return write_list(out, "color3f[] primvars:displayColor", count, 3,
-                          [&](std::size_t i) { return detail::linear_light(field.values[i]); }, interpolation);
-    if (field.name == "velocity" && field.components == 3) return write_list(out, "vector3f[] velocities", count, 3, value);
+        return write_list(
+            out, "color3f[] primvars:displayColor", count, 3,
+            [&](std::size_t i) { return detail::linear_light(field.values[i]); }, interpolation);
+    if (field.name == "velocity" && field.components == 3)
+        return write_list(out, "vector3f[] velocities", count, 3, value);
     const char* type = field.components == 3 ? "vector3f" : field.integer ? "int" : "float";
-    write_list(out, fmt::format("{}[] primvars:{}", type, usd_name(field.name)), count, field.components, value, interpolation);
+    write_list(out, fmt::format("{}[] primvars:{}", type, usd_name(field.name)), count, field.components, value,
+               interpolation);
 }
 
 void write_extent(std::ostream& out, const std::vector<Vec3>& places, double margin) {
@@ -61,7 +68,8 @@ void write_extent(std::ostream& out, const std::vector<Vec3>& places, double mar
             low[k] = std::min(low[k], p[k] - margin);
             high[k] = std::max(high[k], p[k] + margin);
         }
-    out << fmt::format("        float3[] extent = [({}, {}, {}), ({}, {}, {})]\n", low[0], low[1], low[2], high[0], high[1], high[2]);
+    out << fmt::format("        float3[] extent = [({}, {}, {}), ({}, {}, {})]\n", low[0], low[1], low[2], high[0],
+                       high[1], high[2]);
 }
 
 void write_places(std::ostream& out, const std::vector<Vec3>& places) {
@@ -73,12 +81,14 @@ void write_films(std::ostream& out, const sim::Surface& s) {
     out << "        uniform bool doubleSided = 1\n        uniform token subdivisionScheme = \"none\"\n";
     write_extent(out, s.position, 0.0);
     write_list(out, "int[] faceVertexCounts", s.triangles.size(), 1, [](std::size_t) { return 3.0; });
-    write_list(out, "int[] faceVertexIndices", 3 * s.triangles.size(), 1, [&](std::size_t i) { return static_cast<double>(s.triangles[i / 3][i % 3]); });
+    write_list(out, "int[] faceVertexIndices", 3 * s.triangles.size(), 1,
+               [&](std::size_t i) { return static_cast<double>(s.triangles[i / 3][i % 3]); });
     write_places(out, s.position);
     for (const sim::Field& field : s.vertex_fields) write_field(out, field, s.position.size(), "vertex");
     for (const std::size_t side : {0U, 1U})
-        write_list(out, side == 0 ? "int[] primvars:region_back" : "int[] primvars:region_front", s.regions.size(), 1,
-                   [&](std::size_t i) { return static_cast<double>(s.regions[i][side]); }, "uniform");
+        write_list(
+            out, side == 0 ? "int[] primvars:region_back" : "int[] primvars:region_front", s.regions.size(), 1,
+            [&](std::size_t i) { return static_cast<double>(s.regions[i][side]); }, "uniform");
     for (const sim::Field& field : s.face_fields) write_field(out, field, s.triangles.size(), "uniform");
     out << "    }\n";
 }
@@ -90,7 +100,8 @@ void write_balls(std::ostream& out, const sim::Points& points) {
     write_extent(out, points.position, largest);
     write_places(out, points.position);
     if (!points.radius.empty())
-        write_list(out, "float[] widths", points.size(), 1, [&](std::size_t i) { return 2.0 * points.radius[i]; }, "vertex");
+        write_list(
+            out, "float[] widths", points.size(), 1, [&](std::size_t i) { return 2.0 * points.radius[i]; }, "vertex");
     for (const sim::Field& field : points.fields) write_field(out, field, points.size(), "vertex");
     out << "    }\n";
 }
@@ -99,8 +110,10 @@ void write_balls(std::ostream& out, const sim::Points& points) {
 
 void write_usda(std::ostream& out, const sim::Frame& frame) {
     detail::check_frame(frame);
-    if (frame.surface.empty() && frame.points.empty()) throw InputError("the frame has no films and no points: there is nothing to draw");
-    out << "#usda 1.0\n(\n    defaultPrim = \"lamella\"\n    metersPerUnit = 1\n    upAxis = \"Z\"\n)\n\ndef Xform \"lamella\"\n{\n";
+    if (frame.surface.empty() && frame.points.empty())
+        throw InputError("the frame has no films and no points: there is nothing to draw");
+    out << "#usda 1.0\n(\n    defaultPrim = \"lamella\"\n    metersPerUnit = 1\n    upAxis = \"Z\"\n)\n\ndef Xform "
+           "\"lamella\"\n{\n";
     out << "    custom string solver = \"" << usd_name(frame.solver) << "\"\n";
     out << "    custom double time = " << shortest_text(frame.time) << '\n';
     if (!frame.surface.empty()) write_films(out, frame.surface);

@@ -37,7 +37,8 @@ struct Thickness {
 
 Thickness thicknesses(const sim::Frame& frame, const FilmPatches& patches) {
     const auto field = detail::thickness_field(frame);
-    if (field && field->place != NamedField::kPoints) return {joined_values(patches, detail::corner_values(patches, *field))};
+    if (field && field->place != NamedField::kPoints)
+        return {joined_values(patches, detail::corner_values(patches, *field))};
     const Bounds bounds = frame_bounds(frame);
     const auto on_stage = [&](const Vec3& p) { return (p - bounds.center) / bounds.radius; };
     std::vector<double> values(patches.corner_point.size());
@@ -45,7 +46,8 @@ Thickness thicknesses(const sim::Frame& frame, const FilmPatches& patches) {
         std::vector<Vec3> places;
         for (const Vec3& p : frame.points.position) places.push_back(on_stage(p));
         const detail::ParticleAverage average(places, field->field->values);
-        parallel_for(values.size(), [&](std::size_t c) { values[c] = average.at(on_stage(patches.point[patches.corner_point[c]])); });
+        parallel_for(values.size(),
+                     [&](std::size_t c) { values[c] = average.at(on_stage(patches.point[patches.corner_point[c]])); });
         return {values};
     }
     for (std::size_t t = 0; t < patches.triangles.size(); ++t)
@@ -62,12 +64,15 @@ void set_color(sim::Field& field, std::size_t item, const Rgb& color) {
 }
 
 /// Colors by a field, or nothing where the films have none of that name.
-std::optional<std::vector<Rgb>> field_colors(const sim::Frame& frame, const FilmPatches& patches, const std::string& name) {
+std::optional<std::vector<Rgb>> field_colors(const sim::Frame& frame,
+                                             const FilmPatches& patches,
+                                             const std::string& name) {
     for (const NamedField& f : detail::find_fields(frame, name)) {
         if (f.place == NamedField::kPoints) continue;
         const ColorScale scale = scale_for(*f.field, scalar_values(*f.field));
         std::vector<Rgb> colors;
-        for (const double value : joined_values(patches, detail::corner_values(patches, f))) colors.push_back(scale.color(value));
+        for (const double value : joined_values(patches, detail::corner_values(patches, f)))
+            colors.push_back(scale.color(value));
         return colors;
     }
     return std::nullopt;
@@ -84,7 +89,8 @@ sim::Surface baked_surface(const sim::Frame& frame, const std::string& field, bo
     for (std::size_t t = 0; t < patches.triangles.size(); ++t) {
         const std::uint32_t f = patches.source[t];
         // Patches are turned so that their front is the region with the larger number.
-        const std::array<std::int32_t, 2> sides = f < from.regions.size() ? from.regions[f] : std::array<std::int32_t, 2>{};
+        const std::array<std::int32_t, 2> sides =
+            f < from.regions.size() ? from.regions[f] : std::array<std::int32_t, 2>{};
         surface.regions.push_back({std::min(sides[0], sides[1]), std::max(sides[0], sides[1])});
         for (std::size_t k = 0; k < 3; ++k) source[patches.triangles[t][k]] = patches.source_corner[t][k];
     }
@@ -110,14 +116,16 @@ sim::Surface baked_surface(const sim::Frame& frame, const std::string& field, bo
         if (surface.find_of_vertices(f.name) != nullptr) continue;
         const auto n = static_cast<std::size_t>(f.components);
         sim::Field copy{f.name, f.unit, f.components, f.integer, {}};
-        for (const std::uint32_t v : source) copy.values.insert(copy.values.end(), &f.values[n * v], &f.values[n * v] + n);
+        for (const std::uint32_t v : source)
+            copy.values.insert(copy.values.end(), &f.values[n * v], &f.values[n * v] + n);
         surface.vertex_fields.push_back(std::move(copy));
     }
     for (const sim::Field& f : from.face_fields) {
         if (f.components > 3) continue;  // the nodes of curved triangles are not what they were for turned ones
         const auto n = static_cast<std::size_t>(f.components);
         sim::Field copy{f.name, f.unit, f.components, f.integer, {}};
-        for (const std::uint32_t t : patches.source) copy.values.insert(copy.values.end(), &f.values[n * t], &f.values[n * t] + n);
+        for (const std::uint32_t t : patches.source)
+            copy.values.insert(copy.values.end(), &f.values[n * t], &f.values[n * t] + n);
         surface.face_fields.push_back(std::move(copy));
     }
     return surface;

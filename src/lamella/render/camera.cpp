@@ -28,10 +28,12 @@ Bounds frame_bounds(const sim::Frame& frame) {
     Bounds bounds{0.5 * (low + high), 0.0};
     for (const auto& t : frame.surface.triangles)
         for (const std::uint32_t v : t)
-            if (v < frame.surface.position.size()) bounds.radius = std::max(bounds.radius, norm(frame.surface.position[v] - bounds.center));
+            if (v < frame.surface.position.size())
+                bounds.radius = std::max(bounds.radius, norm(frame.surface.position[v] - bounds.center));
     for (std::size_t i = 0; i < frame.points.size(); ++i)
         bounds.radius = std::max(bounds.radius, norm(frame.points.position[i] - bounds.center) + radius(i));
-    if (!(bounds.radius > 0.0) || !std::isfinite(bounds.radius)) throw InputError("all that could be seen lies in one point, or nowhere");
+    if (!(bounds.radius > 0.0) || !std::isfinite(bounds.radius))
+        throw InputError("all that could be seen lies in one point, or nowhere");
     return bounds;
 }
 
@@ -56,7 +58,8 @@ Camera::Camera(const View& view, const Bounds& bounds, std::size_t width, std::s
     const double pixel = 2.0 * std::tan(half_angle) / shorter;
     across_ = pixel * right;
     down_ = -pixel * up;
-    corner_ = -back - (0.5 - view.shift) * static_cast<double>(width) * across_ - 0.5 * static_cast<double>(height) * down_;
+    corner_ =
+        -back - (0.5 - view.shift) * static_cast<double>(width) * across_ - 0.5 * static_cast<double>(height) * down_;
 }
 
 Vec3 Camera::direction(double x, double y) const {

@@ -7,9 +7,9 @@ namespace lamella::render {
 
 /// From where a frame is looked at. z points up.
 struct View {
-    double azimuth_deg = -62.0;   ///< of the camera around the z axis; 0: on the +x side
-    double elevation_deg = 16.0;  ///< above the horizon; 90: from straight above, +y up in the picture
-    double zoom = 1.0;            ///< 1: everything just fits
+    double azimuth_deg = -62.0;       ///< of the camera around the z axis; 0: on the +x side
+    double elevation_deg = 16.0;      ///< above the horizon; 90: from straight above, +y up in the picture
+    double zoom = 1.0;                ///< 1: everything just fits
     double field_of_view_deg = 26.0;  ///< of the picture's shorter side
     double shift = 0.0;               ///< of the middle to the left, relative to the picture's width: room for a legend
 };

@@ -22,7 +22,8 @@ void visit_points(std::string_view strokes, Visit&& visit) {
             visit(std::optional<Vec2>());
             ++i;
         } else {
-            visit(std::optional(Vec2{{static_cast<double>(strokes[i] - '0'), static_cast<double>(strokes[i + 1] - '0') - 2.0}}));
+            visit(std::optional(
+                Vec2{{static_cast<double>(strokes[i] - '0'), static_cast<double>(strokes[i + 1] - '0') - 2.0}}));
             i += 2;
         }
     }
@@ -96,7 +97,9 @@ void Canvas::draw_text(const Vec2& start, double size, std::string_view text, co
         std::optional<Vec2> before;
         visit_points(detail::glyph_strokes(character), [&](const std::optional<Vec2>& p) {
             if (p && before) {
-                const auto placed = [&](const Vec2& q) { return Vec2{{pen_x + scale * q[0], start[1] - scale * q[1]}}; };
+                const auto placed = [&](const Vec2& q) {
+                    return Vec2{{pen_x + scale * q[0], start[1] - scale * q[1]}};
+                };
                 draw_line(placed(*before), placed(*p), std::max(1.0, kPen * size), color);
             }
             before = p;

@@ -12,8 +12,8 @@ namespace lamella::render {
 /// A color for a screen: red, green, blue encoded as sRGB says, and opacity; all 0 to 1.
 using ScreenColor = std::array<float, 4>;
 
-/// A picture that text, lines and areas can be drawn on. (0, 0) is the upper left corner of the upper left pixel, y points
-/// down, lengths are pixels. Edges are smooth; what lies outside is left out.
+/// A picture that text, lines and areas can be drawn on. (0, 0) is the upper left corner of the upper left pixel, y
+/// points down, lengths are pixels. Edges are smooth; what lies outside is left out.
 class Canvas {
 public:
     Canvas(std::size_t width, std::size_t height, const ScreenColor& background);

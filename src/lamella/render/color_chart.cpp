@@ -10,8 +10,8 @@
 namespace lamella::render {
 namespace {
 
-constexpr double kThickest = 1500e-9;   // [m]
-constexpr double kSteepest = 85.0;      // [deg]
+constexpr double kThickest = 1500e-9;  // [m]
+constexpr double kSteepest = 85.0;     // [deg]
 constexpr double kThickFilmShown = 0.45;
 
 constexpr ScreenColor kPaper{0.09F, 0.09F, 0.10F, 1.0F};
@@ -27,7 +27,8 @@ ScreenColor screen_color(const optics::Rgb& color) {
 
 /// A film's color, brightened so that a thick film of that angle is kThickFilmShown bright.
 optics::Rgb shown_film(const optics::FilmColors& film, double thickness, double cosine) {
-    return kThickFilmShown / optics::luminance(film.reflected_by_thick_film(cosine)) * film.reflected(thickness, cosine);
+    return kThickFilmShown / optics::luminance(film.reflected_by_thick_film(cosine)) *
+           film.reflected(thickness, cosine);
 }
 
 struct Area {
@@ -58,14 +59,18 @@ Canvas color_chart(const optics::FilmLight& film, std::size_t width, std::size_t
     const Area map{strip.left, std::floor(0.34 * h), strip.right, std::floor(0.88 * h)};
     std::vector<ScreenColor> normal(static_cast<std::size_t>(strip.right - strip.left));
     for (std::size_t x = 0; x < normal.size(); ++x)
-        normal[x] = screen_color(shown_film(colors, kThickest * (static_cast<double>(x) + 0.5) / static_cast<double>(normal.size()), 1.0));
-    paint(canvas, strip, [&](double u, double) { return normal[static_cast<std::size_t>(u * static_cast<double>(normal.size()))]; });
+        normal[x] = screen_color(
+            shown_film(colors, kThickest * (static_cast<double>(x) + 0.5) / static_cast<double>(normal.size()), 1.0));
+    paint(canvas, strip,
+          [&](double u, double) { return normal[static_cast<std::size_t>(u * static_cast<double>(normal.size()))]; });
     paint(canvas, map, [&](double u, double v) {
         return screen_color(shown_film(colors, u * kThickest, std::cos(kSteepest * v * std::numbers::pi / 180.0)));
     });
 
     canvas.draw_text({{strip.left, 0.085 * h}}, 1.5 * size, "Colors of soap films", kInk);
-    canvas.draw_text_ending({{strip.right, 0.085 * h}}, size, fmt::format("light {}, liquid with index {:.3f} at 555 nm", film.light.name, colors.index(35)), kDim);
+    canvas.draw_text_ending(
+        {{strip.right, 0.085 * h}}, size,
+        fmt::format("light {}, liquid with index {:.3f} at 555 nm", film.light.name, colors.index(35)), kDim);
     for (int nm = 0; nm <= 1500; nm += 100) {
         const double x = strip.left + (strip.right - strip.left) * nm / 1500.0;
         canvas.draw_line({{x, strip.bottom + 0.2 * size}}, {{x, strip.bottom + 0.7 * size}}, 1.5, kDim);

@@ -13,8 +13,24 @@ namespace {
 using Encoded = std::array<int, 3>;
 
 // Nine colors each, evenly spaced; encoded sRGB.
-constexpr std::array<Encoded, 9> kOneSided{{{68, 1, 84}, {71, 44, 122}, {59, 81, 139}, {44, 113, 142}, {33, 144, 141}, {39, 173, 129}, {92, 200, 99}, {170, 220, 50}, {253, 231, 37}}};
-constexpr std::array<Encoded, 9> kTwoSided{{{24, 60, 140}, {48, 108, 184}, {96, 157, 208}, {170, 206, 228}, {242, 242, 240}, {244, 194, 168}, {222, 126, 98}, {186, 58, 58}, {126, 14, 38}}};
+constexpr std::array<Encoded, 9> kOneSided{{{68, 1, 84},
+                                            {71, 44, 122},
+                                            {59, 81, 139},
+                                            {44, 113, 142},
+                                            {33, 144, 141},
+                                            {39, 173, 129},
+                                            {92, 200, 99},
+                                            {170, 220, 50},
+                                            {253, 231, 37}}};
+constexpr std::array<Encoded, 9> kTwoSided{{{24, 60, 140},
+                                            {48, 108, 184},
+                                            {96, 157, 208},
+                                            {170, 206, 228},
+                                            {242, 242, 240},
+                                            {244, 194, 168},
+                                            {222, 126, 98},
+                                            {186, 58, 58},
+                                            {126, 14, 38}}};
 
 optics::Rgb decoded(const std::array<Encoded, 9>& colors, double place) {
     const double at = std::clamp(place, 0.0, 1.0) * 8.0;
@@ -48,7 +64,7 @@ std::vector<double> scalar_values(const sim::Field& field) {
 
 ColorScale scale_for(const sim::Field& field, const std::vector<double>& values) {
     ColorScale scale;
-    scale.name = field.components == 1 ? field.name : "length of " + field.name;
+    scale.name = field.components == 1 ? field.name : "|" + field.name + "|";
     scale.unit = field.unit;
     scale.low = std::numeric_limits<double>::infinity();
     scale.high = -scale.low;
@@ -73,7 +89,8 @@ std::vector<double> ticks(double low, double high, int count) {
     for (const double nice : {5.0, 2.0, 1.0})
         if (nice * power >= raw * 0.999) step = nice * power;
     std::vector<double> list;
-    for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1.0) list.push_back(k * step + 0.0);
+    for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1.0)
+        list.push_back(k * step + 0.0);
     return list;
 }
 
@@ -91,7 +108,8 @@ void draw_legend(Canvas& canvas, const ColorScale& scale) {
         const double place = (bottom - y - 0.5) / (bottom - top);
         const optics::Rgb color = scale.color(scale.low + place * (scale.high - scale.low));
         ScreenColor encoded{0, 0, 0, 1};
-        for (std::size_t k = 0; k < 3; ++k) encoded[k] = static_cast<float>(optics::encode_srgb(std::clamp(color[k], 0.0, 1.0)));
+        for (std::size_t k = 0; k < 3; ++k)
+            encoded[k] = static_cast<float>(optics::encode_srgb(std::clamp(color[k], 0.0, 1.0)));
         canvas.fill({{left, y}}, {{right, std::min(y + 1.0, bottom)}}, encoded);
     }
     for (const double value : ticks(scale.low, scale.high, 5)) {

@@ -9,8 +9,8 @@
 
 namespace lamella::render {
 
-/// How the values of a field become colors: from dark blue over green to yellow (after matplotlib's viridis), or, where a
-/// field has both signs, from blue over white to red with white at 0.
+/// How the values of a field become colors: from dark blue over green to yellow (after matplotlib's viridis), or, where
+/// a field has both signs, from blue over white to red with white at 0.
 struct ColorScale {
     std::string name;  ///< of the field, with "|...|" around that of a vector's length
     std::string unit;

@@ -19,8 +19,8 @@ using std::numbers::pi;
 
 namespace {
 
-constexpr std::size_t kRows = 64, kColumns = 128;              // of the table that directions are drawn from
-constexpr std::size_t kMatteRows = 33, kMatteColumns = 64;     // of the table of matte surfaces; rows from pole to pole
+constexpr std::size_t kRows = 64, kColumns = 128;           // of the table that directions are drawn from
+constexpr std::size_t kMatteRows = 33, kMatteColumns = 64;  // of the table of matte surfaces; rows from pole to pole
 
 /// Hazy sky, brighter near the horizon and around a veiled sun, over gray ground.
 Rgb daylight(const Vec3& d) {
@@ -38,9 +38,7 @@ Vec3 direction_at(double row, double column) {  // row from the top, both 0 to 1
     return {{std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar)}};
 }
 
-std::vector<detail::Lamp> hung(std::initializer_list<detail::LampPlan> plans) {
-    return {plans.begin(), plans.end()};
-}
+std::vector<detail::Lamp> hung(std::initializer_list<detail::LampPlan> plans) { return {plans.begin(), plans.end()}; }
 
 }  // namespace
 
@@ -64,16 +62,16 @@ struct Environment::Room {
             room.floor = {{0.13, 0.14, 0.16}};
             room.ceiling = {{0.50, 0.53, 0.58}};
             room.lamps = hung({{-125.0, 36.0, 0.62, 0.78, 0.14, 0.10, {{8.8, 8.6, 8.3}}},
-                                {-12.0, 20.0, 0.22, 1.00, 0.10, 0.10, {{6.4, 6.7, 7.3}}},
-                                {95.0, 58.0, 0.85, 0.50, 0.20, 0.30, {{5.0, 5.0, 5.0}}},
-                                {150.0, -2.0, 0.24, 0.90, 0.12, 0.20, {{3.4, 3.2, 3.0}}},
-                                {-70.0, -52.0, 0.80, 0.34, 0.20, 0.40, {{1.7, 1.8, 2.1}}}});
+                               {-12.0, 20.0, 0.22, 1.00, 0.10, 0.10, {{6.4, 6.7, 7.3}}},
+                               {95.0, 58.0, 0.85, 0.50, 0.20, 0.30, {{5.0, 5.0, 5.0}}},
+                               {150.0, -2.0, 0.24, 0.90, 0.12, 0.20, {{3.4, 3.2, 3.0}}},
+                               {-70.0, -52.0, 0.80, 0.34, 0.20, 0.40, {{1.7, 1.8, 2.1}}}});
         } else if (name == "window") {
             room.floor = {{0.20, 0.17, 0.14}};
             room.ceiling = {{0.62, 0.58, 0.52}};
             room.lamps = hung({{-118.0, 28.0, 0.50, 0.72, 0.02, 0.03, {{10.5, 11.1, 12.0}}, 2, 3},
-                                {25.0, 24.0, 0.36, 0.54, 0.02, 0.04, {{5.2, 5.5, 6.1}}, 2, 3},
-                                {120.0, 40.0, 0.90, 0.60, 0.25, 0.50, {{3.0, 2.6, 2.1}}}});
+                               {25.0, 24.0, 0.36, 0.54, 0.02, 0.04, {{5.2, 5.5, 6.1}}, 2, 3},
+                               {120.0, 40.0, 0.90, 0.60, 0.25, 0.50, {{3.0, 2.6, 2.1}}}});
         } else if (name == "daylight") {
             room.sky = true;
         } else if (name == "gray") {
@@ -98,8 +96,10 @@ Environment::Environment(const std::string& name) : room_(Room::named(name)) {
     if (room_ == nullptr) {
         if (!name.ends_with(".hdr") && !name.ends_with(".exr") && !name.ends_with(".pic")) {
             const auto near = nearest_word(name, names());
-            throw InputError(fmt::format("there is no environment {}{}; studio, window, daylight, gray, or a file that ends in "
-                                         ".hdr or .exr", name, near ? fmt::format("; did you mean {}?", *near) : ""));
+            throw InputError(
+                fmt::format("there is no environment {}{}; studio, window, daylight, gray, or a file that ends in "
+                            ".hdr or .exr",
+                            name, near ? fmt::format("; did you mean {}?", *near) : ""));
         }
         picture_ = io::read_light_image(name);
     }
@@ -112,7 +112,8 @@ Rgb Environment::light(const Vec3& d) const { return room_ != nullptr ? room_->l
 Rgb Environment::painted(const Vec3& d) const {
     const double row = std::acos(std::clamp(d[2], -1.0, 1.0)) / pi;
     const double column = std::atan2(d[1], d[0]) / (2.0 * pi);
-    const double y = std::clamp(row * static_cast<double>(picture_.height) - 0.5, 0.0, static_cast<double>(picture_.height - 1));
+    const double y =
+        std::clamp(row * static_cast<double>(picture_.height) - 0.5, 0.0, static_cast<double>(picture_.height - 1));
     double x = (0.5 - column) * static_cast<double>(picture_.width) - 0.5;  // the middle of the picture is azimuth 0
     if (x < 0.0) x += static_cast<double>(picture_.width);
     const auto x0 = static_cast<std::size_t>(x) % picture_.width, x1 = (x0 + 1) % picture_.width;
@@ -121,7 +122,8 @@ Rgb Environment::painted(const Vec3& d) const {
     Rgb sum;
     for (std::size_t k = 0; k < 3; ++k) {
         const auto value = [&](std::size_t a, std::size_t b) { return static_cast<double>(picture_.pixel(a, b)[k]); };
-        sum[k] = (1.0 - fy) * ((1.0 - fx) * value(x0, y0) + fx * value(x1, y0)) + fy * ((1.0 - fx) * value(x0, y1) + fx * value(x1, y1));
+        sum[k] = (1.0 - fy) * ((1.0 - fx) * value(x0, y0) + fx * value(x1, y0)) +
+                 fy * ((1.0 - fx) * value(x0, y1) + fx * value(x1, y1));
     }
     return sum;
 }
@@ -167,7 +169,8 @@ LightSample Environment::sample(double a, double b) const {
     const std::size_t r = find(row_sum_.data(), kRows, a, &in_row);
     const double* cells = &cell_sum_[r * (kColumns + 1)];
     const std::size_t c = find(cells, kColumns, b, &in_cell);
-    const double row = (static_cast<double>(r) + in_row) / kRows, column = (static_cast<double>(c) + in_cell) / kColumns;
+    const double row = (static_cast<double>(r) + in_row) / kRows,
+                 column = (static_cast<double>(c) + in_cell) / kColumns;
     const Vec3 direction = direction_at(row, column);
     return {direction, light(direction), cell_density(r, c, pi * row)};
 }
@@ -182,7 +185,8 @@ double Environment::density(const Vec3& d) const {
 /// By the table's cell and the angle from the z axis.
 double Environment::cell_density(std::size_t r, std::size_t c, double polar) const {
     const double* cells = &cell_sum_[r * (kColumns + 1)];
-    const double probability = (row_sum_[r + 1] - row_sum_[r]) / row_sum_[kRows] * (cells[c + 1] - cells[c]) / cells[kColumns];
+    const double probability =
+        (row_sum_[r + 1] - row_sum_[r]) / row_sum_[kRows] * (cells[c + 1] - cells[c]) / cells[kColumns];
     return probability / (2.0 * pi * pi / (kRows * kColumns) * std::max(std::sin(polar), 1e-9));
 }
 
@@ -212,7 +216,8 @@ Rgb Environment::matte(const Vec3& normal) const {
     const double row = std::acos(std::clamp(normal[2], -1.0, 1.0)) / pi * (kMatteRows - 1);
     double column = std::atan2(normal[1], normal[0]) / (2.0 * pi) * kMatteColumns;
     if (column < 0.0) column += kMatteColumns;
-    const auto r = std::min(static_cast<std::size_t>(row), kMatteRows - 2), c = static_cast<std::size_t>(column) % kMatteColumns;
+    const auto r = std::min(static_cast<std::size_t>(row), kMatteRows - 2),
+               c = static_cast<std::size_t>(column) % kMatteColumns;
     const double fr = row - static_cast<double>(r), fc = column - std::floor(column);
     const auto along = [&](std::size_t at) {
         return (1.0 - fc) * matte_[at * kMatteColumns + c] + fc * matte_[at * kMatteColumns + (c + 1) % kMatteColumns];

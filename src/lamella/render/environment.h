@@ -12,17 +12,17 @@ namespace lamella::render {
 
 /// A direction with the light from there, drawn at random.
 struct LightSample {
-    Vec3 direction;      ///< unit
-    optics::Rgb light;   ///< radiance [of white paper]
-    double density = 0.0;///< probability per solid angle [1/sr]
+    Vec3 direction;        ///< unit
+    optics::Rgb light;     ///< radiance [of white paper]
+    double density = 0.0;  ///< probability per solid angle [1/sr]
 };
 
 /// The light that comes from infinitely far, by direction; z points up, azimuth 0 is towards +x.
 class Environment {
 public:
-    /// "studio": large soft lamps in a dark room, made for films; "window": a room with a bright window of six panes and a
-    /// warm wall; "daylight": a hazy sky with a veiled sun over gray ground; "gray": the same light from everywhere;
-    /// otherwise a picture of light (.hdr, .pic, .exr) of the whole sphere, azimuth 0 in its middle.
+    /// "studio": large soft lamps in a dark room, made for films; "window": a room with a bright window of six panes
+    /// and a warm wall; "daylight": a hazy sky with a veiled sun over gray ground; "gray": the same light from
+    /// everywhere; otherwise a picture of light (.hdr, .pic, .exr) of the whole sphere, azimuth 0 in its middle.
     /// @throws InputError  no such name or file   @throws IoError
     explicit Environment(const std::string& name);
     ~Environment();

@@ -30,7 +30,8 @@ std::vector<Vec3> image_shifts(const sim::Box& box, int count) {
     return shifts;
 }
 
-/// For each vertex the smallest number of those that films connect it with. Vertices at one place (to rounding) are one.
+/// For each vertex the smallest number of those that films connect it with. Vertices at one place (to rounding) are
+/// one.
 std::vector<std::uint32_t> connected_parts(const sim::Surface& s, double grain) {
     std::vector<std::uint32_t> root(s.position.size()), order(root.size());
     std::iota(root.begin(), root.end(), 0U);
@@ -46,7 +47,8 @@ std::vector<std::uint32_t> connected_parts(const sim::Surface& s, double grain) 
     std::vector<std::array<std::int64_t, 3>> cell(root.size());
     for (std::size_t v = 0; v < cell.size(); ++v)
         for (std::size_t k = 0; k < 3; ++k) cell[v][k] = std::llround(s.position[v][k] / grain);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return cell[a] != cell[b] ? cell[a] < cell[b] : a < b; });
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return cell[a] != cell[b] ? cell[a] < cell[b] : a < b; });
     for (std::size_t i = 1; i < order.size(); ++i)
         if (cell[order[i]] == cell[order[i - 1]]) join(order[i], order[i - 1]);
     for (const auto& [a, b, c] : s.triangles) join(a, b), join(b, c);

@@ -20,11 +20,16 @@ using optics::Rgb;
 class Backdrop {
 public:
     explicit Backdrop(const std::string& name) {
-        if (name == "dark") upper_ = {{0.030, 0.034, 0.042}}, lower_ = {{0.0035, 0.0040, 0.0052}};
-        else if (name == "light") upper_ = {{0.93, 0.94, 0.95}}, lower_ = {{0.60, 0.61, 0.63}};
-        else if (name == "transparent") transparent_ = true;
-        else if (name == "environment") shows_environment_ = true;
-        else upper_ = lower_ = parse(name);
+        if (name == "dark")
+            upper_ = {{0.030, 0.034, 0.042}}, lower_ = {{0.0035, 0.0040, 0.0052}};
+        else if (name == "light")
+            upper_ = {{0.93, 0.94, 0.95}}, lower_ = {{0.60, 0.61, 0.63}};
+        else if (name == "transparent")
+            transparent_ = true;
+        else if (name == "environment")
+            shows_environment_ = true;
+        else
+            upper_ = lower_ = parse(name);
     }
 
     bool transparent() const { return transparent_; }
@@ -41,13 +46,17 @@ public:
 private:
     static Rgb parse(const std::string& text) {
         unsigned value = 0;
-        const bool hex = text.size() == 7 && text[0] == '#' && text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+        const bool hex = text.size() == 7 && text[0] == '#' &&
+                         text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
         if (!hex)
-            throw InputError(fmt::format("there is no background {}; dark, light, transparent, environment, or a color such as "
-                                         "#1a2b3c", text));
+            throw InputError(
+                fmt::format("there is no background {}; dark, light, transparent, environment, or a color such as "
+                            "#1a2b3c",
+                            text));
         value = static_cast<unsigned>(std::stoul(text.substr(1), nullptr, 16));
         Rgb color;
-        for (std::size_t k = 0; k < 3; ++k) color[k] = optics::decode_srgb(static_cast<double>(value >> (16 - 8 * k) & 255) / 255.0);
+        for (std::size_t k = 0; k < 3; ++k)
+            color[k] = optics::decode_srgb(static_cast<double>(value >> (16 - 8 * k) & 255) / 255.0);
         return color;
     }
 
@@ -84,8 +93,8 @@ Rgb shoulder(const Rgb& light) {
     return (kKnee + (1.0 - kKnee) * (1.0 - std::exp(-(bright - kKnee) / (1.0 - kKnee)))) / bright * light;
 }
 
-/// Which pixels of a tile may show more than the background: those near a pixel that two rays find occupied. What is thinner
-/// than a third of a pixel and apart from all else can be missed.
+/// Which pixels of a tile may show more than the background: those near a pixel that two rays find occupied. What is
+/// thinner than a third of a pixel and apart from all else can be missed.
 std::vector<std::uint8_t> occupied(const Studio& studio, const Tile& tile) {
     const std::size_t across = tile.x1 - tile.x0 + 2, down = tile.y1 - tile.y0 + 2;
     std::vector<std::uint8_t> found(across * down, 0);
@@ -108,7 +117,8 @@ std::vector<std::uint8_t> occupied(const Studio& studio, const Tile& tile) {
 double tent(double u) { return 0.5 + (u < 0.5 ? std::sqrt(2.0 * u) - 1.0 : 1.0 - std::sqrt(2.0 - 2.0 * u)); }
 
 /// The mean of what the samples of a pixel saw.
-void write_pixel(const Studio& studio, std::span<const detail::Seen> seen, std::size_t x, std::size_t y, Picture* picture) {
+void write_pixel(
+    const Studio& studio, std::span<const detail::Seen> seen, std::size_t x, std::size_t y, Picture* picture) {
     Rgb light, shown;
     double alpha = 0.0;
     for (const detail::Seen& s : seen) {
@@ -157,7 +167,8 @@ void draw_tile(const Studio& studio, const Tile& tile, Picture* picture) {
 
 void check(const PictureOptions& options) {
     const auto within = [](const char* name, double value, double low, double high) {
-        if (!(value >= low && value <= high)) throw InputError(fmt::format("{} = {:g} is outside [{:g}, {:g}]", name, value, low, high));
+        if (!(value >= low && value <= high))
+            throw InputError(fmt::format("{} = {:g} is outside [{:g}, {:g}]", name, value, low, high));
     };
     within("width", static_cast<double>(options.width), 1, 16384);
     within("height", static_cast<double>(options.height), 1, 16384);
@@ -175,7 +186,9 @@ void check(const PictureOptions& options) {
 
 bool can_render() { return detail::can_trace_rays(); }
 
-Picture render_frame(const sim::Frame& frame, const PictureOptions& options, const std::function<void(double)>& progress) {
+Picture render_frame(const sim::Frame& frame,
+                     const PictureOptions& options,
+                     const std::function<void(double)>& progress) {
     check(options);
     Backdrop backdrop(options.background);
     Environment environment(options.environment);
@@ -184,7 +197,10 @@ Picture render_frame(const sim::Frame& frame, const PictureOptions& options, con
         const std::optional<Rgb> behind = backdrop.color(0.5, 0.8);
         stage.ground->color = behind ? *behind : environment.light({{0.0, 0.0, -1.0}});
     }
-    const Studio studio{options, std::move(stage), std::move(environment), std::move(backdrop),
+    const Studio studio{options,
+                        std::move(stage),
+                        std::move(environment),
+                        std::move(backdrop),
                         optics::FilmColorTable({}, {.thicknesses = 801, .cosines = 65}),
                         Camera(options.view, {{}, 1.0}, options.width, options.height)};
 
@@ -193,12 +209,14 @@ Picture render_frame(const sim::Frame& frame, const PictureOptions& options, con
     picture.thickness_origin = studio.stage.thickness_origin;
     picture.light = {options.width, options.height, 4, std::vector<float>(4 * options.width * options.height)};
     picture.shown = picture.light;
-    const std::size_t across = (options.width + kTile - 1) / kTile, tiles = across * ((options.height + kTile - 1) / kTile);
+    const std::size_t across = (options.width + kTile - 1) / kTile,
+                      tiles = across * ((options.height + kTile - 1) / kTile);
     const std::size_t batch = std::max<std::size_t>(48, 12 * static_cast<std::size_t>(thread_count()));
     for (std::size_t first = 0; first < tiles; first += batch) {
         parallel_blocks(std::min(batch, tiles - first), 1, [&](std::size_t k, std::size_t) {
             const std::size_t x = (first + k) % across * kTile, y = (first + k) / across * kTile;
-            draw_tile(studio, {x, y, std::min(x + kTile, options.width), std::min(y + kTile, options.height)}, &picture);
+            draw_tile(studio, {x, y, std::min(x + kTile, options.width), std::min(y + kTile, options.height)},
+                      &picture);
         });
         if (progress) progress(static_cast<double>(std::min(tiles, first + batch)) / static_cast<double>(tiles));
     }

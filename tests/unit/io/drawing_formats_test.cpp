@@ -69,11 +69,13 @@ bool holds(const std::string& text, const std::string& part) { return text.find(
 
 TEST(Glb, HoldsEachFilmWithItsFieldsAndMaterial) {
     const GlbParts parts = parts_of(text_of(io::write_glb, two_films()));
-    for (const char* text : {R"("name":"film_0_1")", R"("name":"film_0_2")", R"("region_back":0,"region_front":2)", R"("_THICKNESS_NM":2)",
-                             R"("iridescenceThicknessMaximum":200})", R"("iridescenceThicknessMaximum":300})", R"("time":0.5)"})
+    for (const char* text :
+         {R"("name":"film_0_1")", R"("name":"film_0_2")", R"("region_back":0,"region_front":2)", R"("_THICKNESS_NM":2)",
+          R"("iridescenceThicknessMaximum":200}})", R"("iridescenceThicknessMaximum":300}})", R"("time":0.5)"})
         EXPECT_TRUE(holds(parts.json, text)) << text << " in " << parts.json;
     // First film: places, normals, thicknesses, linear colors; (x, y, z) stands as (x, z, -y).
-    const std::vector<float> expected{0, 0, 0, 1, 0, 0, 0, 0, -2, 0, 1, 0, 0, 1, 0, 0, 1, 0, 100, 200, 300, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const std::vector<float> expected{0, 0, 0, 1,   0,   0,   0, 0, -2, 0, 1, 0, 0, 1, 0,
+                                      0, 1, 0, 100, 200, 300, 1, 0, 0,  0, 1, 0, 0, 0, 1};
     ASSERT_GE(parts.floats.size(), expected.size());
     for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(parts.floats[i], expected[i]) << i;
     EXPECT_TRUE(holds(parts.json, R"("min":[0,0,-2],"max":[1,0,0])")) << parts.json;
@@ -145,8 +147,9 @@ TEST(DrawingFormats, RefuseFramesWithoutAnything) {
 
 TEST(Ply, GivesNormalsAndColorsTheNamesThatOthersKnow) {
     const std::string text = text_of(io::write_ply, two_films());
-    EXPECT_TRUE(holds(text, "property double nx\nproperty double ny\nproperty double nz\nproperty double thickness_nm\n"
-                            "property uchar red\nproperty uchar green\nproperty uchar blue\n"));
+    EXPECT_TRUE(holds(text,
+                      "property double nx\nproperty double ny\nproperty double nz\nproperty double thickness_nm\n"
+                      "property uchar red\nproperty uchar green\nproperty uchar blue\n"));
     const std::size_t row = 3 * 8 + 3 * 8 + 8 + 3, body = text.find("end_header\n") + 11;
     EXPECT_EQ(text.size(), body + 4 * row + 2 * (1 + 3 * 4 + 2 * 4));
     EXPECT_EQ(text[body + row - 3], '\xff');

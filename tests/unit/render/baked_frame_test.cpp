@@ -1,9 +1,10 @@
 #include "lamella/render/baked_frame.h"
 
-#include <gtest/gtest.h>
-
 #include "lamella/core/error.h"
 #include "lamella/optics/film_colors.h"
+
+#include <gtest/gtest.h>
+
 #include "shown_frames.h"
 
 namespace lamella::render {
@@ -54,13 +55,15 @@ TEST(BakedFrame, KnowsThicknessAndColor) {
     const optics::FilmColors colors;
     const double bright = 0.45 / optics::luminance(colors.reflected_by_thick_film(1.0));
     const auto expected = optics::display_color(bright * colors.reflected(300e-9, 1.0));
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(baked.surface.find_of_vertices("color")->values[k], expected[k], 1.0);
+    for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_NEAR(baked.surface.find_of_vertices("color")->values[k], expected[k], 1.0);
 }
 
 TEST(BakedFrame, ColorsBallsAndFilmsByAField) {
     EXPECT_EQ(baked_frame(one_ball(), "pressure").points.find("color")->values.size(), 3U);
     const sim::Frame by_field = baked_frame(flat_film(2, 300e-9), "thickness");
-    EXPECT_NE(by_field.surface.find_of_vertices("color")->values, baked_frame(flat_film(2, 300e-9)).surface.find_of_vertices("color")->values);
+    EXPECT_NE(by_field.surface.find_of_vertices("color")->values,
+              baked_frame(flat_film(2, 300e-9)).surface.find_of_vertices("color")->values);
     EXPECT_THROW(baked_frame(one_ball(), "presure"), InputError);
     EXPECT_THROW(baked_frame({}), InputError);
 }

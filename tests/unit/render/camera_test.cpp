@@ -1,8 +1,9 @@
 #include "lamella/render/camera.h"
 
+#include "lamella/core/error.h"
+
 #include <gtest/gtest.h>
 
-#include "lamella/core/error.h"
 #include "shown_frames.h"
 
 namespace lamella::render {

@@ -1,8 +1,8 @@
 #include "lamella/render/canvas.h"
 
-#include <gtest/gtest.h>
-
 #include "lamella/render/color_chart.h"
+
+#include <gtest/gtest.h>
 
 namespace lamella::render {
 namespace {

@@ -1,9 +1,9 @@
 #include "lamella/render/environment.h"
 
-#include <gtest/gtest.h>
-
 #include "lamella/core/error.h"
 #include "lamella/core/random.h"
+
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
@@ -80,7 +80,9 @@ TEST(Environment, CanBeAPictureOfLight) {
     EXPECT_NEAR(environment.light(away)[2], 4.0, 0.05);
     // Column 4 of 8 lies just right of the middle, which is azimuth 0; to the right is clockwise, seen from above.
     const double azimuth = -22.5 * std::numbers::pi / 180.0;
-    EXPECT_NEAR(environment.light({{std::cos(azimuth) * std::cos(0.39), std::sin(azimuth) * std::cos(0.39), -std::sin(0.39)}})[0], 2.0, 0.05);
+    EXPECT_NEAR(environment.light(
+                    {{std::cos(azimuth) * std::cos(0.39), std::sin(azimuth) * std::cos(0.39), -std::sin(0.39)}})[0],
+                2.0, 0.05);
     std::filesystem::remove(path);
     EXPECT_THROW(Environment("there/is/no/such.hdr"), IoError);
     EXPECT_THROW(Environment("beach"), InputError);

@@ -13,17 +13,21 @@ namespace {
 double farthest_from_sphere(const std::vector<std::array<float, 3>>& positions) {
     double worst = 0.0;
     for (const auto& p : positions)
-        worst = std::max(worst, std::abs(std::hypot(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])) - 1.0));
+        worst = std::max(worst, std::abs(std::hypot(static_cast<double>(p[0]), static_cast<double>(p[1]),
+                                                    static_cast<double>(p[2])) -
+                                         1.0));
     return worst;
 }
 
 TEST(RefineFilms, RoundsASphere) {
-    // Flat triangles lie below the sphere by O(h^2), 0.07 at level 2; the patches by O(h^4), as their normals are exact.
+    // Flat triangles lie below the sphere by O(h^2), 0.07 at level 2; the patches by O(h^4), as their normals are
+    // exact.
     std::vector<double> error;
     for (const int level : {2, 3, 4}) {
         const FilmPatches patches = film_patches(sphere_film(level).surface);
         EXPECT_TRUE(patches.borders.empty());
-        const FineFilms fine = refine_films(patches, std::vector<std::array<double, 3>>(patches.triangles.size(), {1.0, 1.0, 1.0}), 3);
+        const FineFilms fine =
+            refine_films(patches, std::vector<std::array<double, 3>>(patches.triangles.size(), {1.0, 1.0, 1.0}), 3);
         EXPECT_EQ(fine.triangles.size(), 9 * patches.triangles.size());
         for (const float value : fine.value) EXPECT_EQ(value, 1.0F);
         error.push_back(farthest_from_sphere(fine.position));
@@ -66,7 +70,8 @@ TEST(AssumedThickness, IsThinAboveAndThickBelow) {
     double above = 0.0, below = 0.0;
     for (int i = 0; i < 400; ++i) {
         const double a = 0.1 * i;
-        const Vec3 up{{0.6 * std::cos(a), 0.6 * std::sin(a), 0.75}}, down{{0.6 * std::cos(a), 0.6 * std::sin(a), -0.75}};
+        const Vec3 up{{0.6 * std::cos(a), 0.6 * std::sin(a), 0.75}},
+            down{{0.6 * std::cos(a), 0.6 * std::sin(a), -0.75}};
         for (const Vec3& place : {up, down}) {
             const double h = assumed_thickness(place, static_cast<std::uint32_t>(i % 7));
             EXPECT_GE(h, 20e-9);

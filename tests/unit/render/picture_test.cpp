@@ -1,10 +1,11 @@
 #include "lamella/render/picture.h"
 
-#include <gtest/gtest.h>
-
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/optics/film_colors.h"
+
+#include <gtest/gtest.h>
+
 #include "shown_frames.h"
 
 namespace lamella::render {
@@ -128,11 +129,11 @@ TEST_F(RenderFrame, PutsATableUnderThings) {
     options.ground = true;
     const Picture picture = render_frame(one_ball(), options);
     const double gray = optics::decode_srgb(128.0 / 255.0);
-    EXPECT_NEAR(color_at(picture, 0, 0)[0], gray, 1e-6);   // the wall
+    EXPECT_NEAR(color_at(picture, 0, 0)[0], gray, 1e-6);               // the wall
     EXPECT_NEAR(color_at(picture, 0, 35)[0], 0.8 * gray, 0.2 * gray);  // the table, a little shaded here already
     double darkest = 1.0;
     for (std::size_t x = 0; x < 48; ++x) darkest = std::min(darkest, color_at(picture, x, 33)[0]);
-    EXPECT_LT(darkest, 0.55 * gray);                        // the ball's shadow
+    EXPECT_LT(darkest, 0.55 * gray);  // the ball's shadow
 }
 
 TEST_F(RenderFrame, TakesThicknessesFromParticles) {
@@ -197,7 +198,8 @@ TEST(Develop, CompressesHighlightsAndDrawsTheLegend) {
     picture.scale = ColorScale{"radius", "m", 0.0, 1.0, false};
     const Canvas with_legend = develop(picture);
     double ink = 0.0;
-    for (std::size_t y = 0; y < 150; ++y) ink += static_cast<double>(with_legend.at(150, y)[1] + with_legend.at(160, y)[1]);
+    for (std::size_t y = 0; y < 150; ++y)
+        ink += static_cast<double>(with_legend.at(150, y)[1] + with_legend.at(160, y)[1]);
     EXPECT_GT(ink, 10.0);
 }
 

@@ -21,16 +21,27 @@ struct Polyhedron {
 Polyhedron round_polyhedron() {
     const double g = (1.0 + std::sqrt(5.0)) / 2.0;
     Polyhedron ball;
-    for (const Vec3& p : {Vec3{{-1, g, 0}}, {{1, g, 0}}, {{-1, -g, 0}}, {{1, -g, 0}}, {{0, -1, g}}, {{0, 1, g}}, {{0, -1, -g}},
-                          {{0, 1, -g}}, {{g, 0, -1}}, {{g, 0, 1}}, {{-g, 0, -1}}, {{-g, 0, 1}}})
+    for (const Vec3& p : {Vec3{{-1, g, 0}},
+                          {{1, g, 0}},
+                          {{-1, -g, 0}},
+                          {{1, -g, 0}},
+                          {{0, -1, g}},
+                          {{0, 1, g}},
+                          {{0, -1, -g}},
+                          {{0, 1, -g}},
+                          {{g, 0, -1}},
+                          {{g, 0, 1}},
+                          {{-g, 0, -1}},
+                          {{-g, 0, 1}}})
         ball.position.push_back(p / norm(p));
-    constexpr std::array<std::array<std::uint32_t, 3>, 20> kFaces{{{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11},
-                                                                   {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                                                                   {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9},
-                                                                   {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}}};
+    constexpr std::array<std::array<std::uint32_t, 3>, 20> kFaces{
+        {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+         {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+         {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
     std::map<std::array<std::uint32_t, 2>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-        const auto [it, fresh] = middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<std::uint32_t>(ball.position.size()));
+        const auto [it, fresh] =
+            middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<std::uint32_t>(ball.position.size()));
         if (fresh) {
             const Vec3 sum = ball.position[a] + ball.position[b];
             ball.position.push_back(sum / norm(sum));
@@ -39,7 +50,8 @@ Polyhedron round_polyhedron() {
     };
     for (const auto& [a, b, c] : kFaces) {
         const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-        for (const auto& t : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}) ball.triangles.push_back(t);
+        for (const auto& t : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
+            ball.triangles.push_back(t);
     }
     return ball;
 }

@@ -11,9 +11,9 @@ namespace lamella::io::detail {
 
 /// A part of a frame for programs that draw: a film between two regions, or all balls as small polyhedra.
 struct DrawnPart {
-    std::string name;                                     ///< "film_1_0": region 1 behind, 0 in front; "bubbles"
-    std::array<std::int32_t, 2> regions{-1, -1};          ///< of a film
-    std::vector<std::uint32_t> source;                    ///< of each vertex: the surface's vertex, or the ball
+    std::string name;                             ///< "film_1_0": region 1 behind, 0 in front; "bubbles"
+    std::array<std::int32_t, 2> regions{-1, -1};  ///< of a film
+    std::vector<std::uint32_t> source;            ///< of each vertex: the surface's vertex, or the ball
     std::vector<Vec3> position;
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< empty: just points
     std::vector<Vec3> normal;                             ///< of balls; films have theirs in a field

@@ -39,7 +39,8 @@ double assumed_thickness(const Vec3& place, std::uint32_t film) {
     constexpr double kThin = 180e-9, kThick = 780e-9;  // [m]
     const double own = lattice_value(film, 17, 4711);
     const Vec3 shift{{13.7 * own, 7.1 * own, 3.3 * own}};
-    // Swirls: places are moved along a smooth field before the bands are read off; flat ones, as films flow sideways easily.
+    // Swirls: places are moved along a smooth field before the bands are read off; flat ones, as films flow sideways
+    // easily.
     const Vec3 p = 2.2 * place + shift;
     const Vec3 flow{{noise(p), noise(p + Vec3{{31.4, 0.0, 0.0}}), noise(p + Vec3{{0.0, 27.2, 0.0}})}};
     const Vec3 q = place + 0.16 * flow;

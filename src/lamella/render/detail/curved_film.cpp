@@ -20,13 +20,14 @@ std::array<float, 3> narrow(const Vec3& v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
-/// Tangents at the points of the borders where just two edges meet without a corner: along the line from the point before to
-/// the point after. Elsewhere the edge bends as its other end says.
+/// Tangents at the points of the borders where just two edges meet without a corner: along the line from the point
+/// before to the point after. Elsewhere the edge bends as its other end says.
 std::vector<BorderCurve> border_curves(const FilmPatches& patches) {
     std::vector<std::vector<std::uint32_t>> neighbors(patches.point.size());
     for (const BorderEdge& edge : patches.borders)
         for (std::size_t k = 0; k < 2; ++k) neighbors[edge.ends[k]].push_back(edge.ends[1 - k]);
-    const auto tangent = [&](std::uint32_t from, std::uint32_t to) -> Vec3 {  // unit, towards `to`; zero: none of its own
+    const auto tangent = [&](std::uint32_t from,
+                             std::uint32_t to) -> Vec3 {  // unit, towards `to`; zero: none of its own
         if (neighbors[from].size() != 2) return {};
         const std::uint32_t before = neighbors[from][0] == to ? neighbors[from][1] : neighbors[from][0];
         const Vec3 in = patches.point[from] - patches.point[before], out = patches.point[to] - patches.point[from];
@@ -51,7 +52,8 @@ std::vector<BorderCurve> border_curves(const FilmPatches& patches) {
 }
 
 const BorderCurve* find_curve(const std::vector<BorderCurve>& curves, const Ends& ends) {
-    const auto it = std::lower_bound(curves.begin(), curves.end(), ends, [](const BorderCurve& c, const Ends& e) { return c.ends < e; });
+    const auto it = std::lower_bound(curves.begin(), curves.end(), ends,
+                                     [](const BorderCurve& c, const Ends& e) { return c.ends < e; });
     return it != curves.end() && it->ends == ends ? &*it : nullptr;
 }
 
@@ -87,7 +89,8 @@ Patch curved_patch(const FilmPatches& patches, const std::vector<BorderCurve>& c
         const std::size_t next = (k + 1) % 3;
         const Vec3 &a = patch.corner[k], &b = patch.corner[next];
         const bool forward = point[k] < point[next];
-        if (const BorderCurve* curve = find_curve(curves, {std::min(point[k], point[next]), std::max(point[k], point[next])})) {
+        if (const BorderCurve* curve =
+                find_curve(curves, {std::min(point[k], point[next]), std::max(point[k], point[next])})) {
             patch.edge[k] = forward ? std::array{curve->first, curve->second} : std::array{curve->second, curve->first};
         } else {
             patch.edge[k][0] = (2.0 * a + b - dot(b - a, patch.normal[k]) * patch.normal[k]) / 3.0;
@@ -121,7 +124,8 @@ FineFilms refine_films(const FilmPatches& patches, const std::vector<std::array<
         };
         for (std::size_t i = 0; i <= n; ++i)
             for (std::size_t j = 0; j + i <= n; ++j, ++p) {
-                const double v = static_cast<double>(i) / static_cast<double>(n), u = static_cast<double>(j) / static_cast<double>(n);
+                const double v = static_cast<double>(i) / static_cast<double>(n),
+                             u = static_cast<double>(j) / static_cast<double>(n);
                 const double w = 1.0 - u - v;
                 const Vec3 normal = w * patch.normal[0] + u * patch.normal[1] + v * patch.normal[2];
                 fine.position[p] = narrow(patch.at(u, v));
@@ -148,7 +152,8 @@ std::vector<Thread> refine_borders(const FilmPatches& patches, int pieces) {
         thread.rim = patches.borders[e].films == 1 && !thread.wire;
         for (int i = 0; i <= pieces; ++i) {
             const double s = static_cast<double>(i) / pieces, r = 1.0 - s;
-            thread.points.push_back(r * r * r * a + 3.0 * r * r * s * curves[e].first + 3.0 * r * s * s * curves[e].second + s * s * s * b);
+            thread.points.push_back(r * r * r * a + 3.0 * r * r * s * curves[e].first +
+                                    3.0 * r * s * s * curves[e].second + s * s * s * b);
         }
         threads.push_back(std::move(thread));
     }

@@ -29,7 +29,8 @@ std::vector<std::uint32_t> numbered(const std::vector<Key>& keys, std::vector<Ke
     std::vector<std::uint32_t> number;
     number.reserve(keys.size());
     for (const Key& key : keys)
-        number.push_back(static_cast<std::uint32_t>(std::lower_bound(different->begin(), different->end(), key) - different->begin()));
+        number.push_back(static_cast<std::uint32_t>(std::lower_bound(different->begin(), different->end(), key) -
+                                                    different->begin()));
     return number;
 }
 
@@ -71,21 +72,23 @@ void find_borders(const sim::Surface& surface, const std::vector<std::uint32_t>&
     std::vector<std::uint8_t> held(patches->point.size(), 0);
     const sim::Field* on_wire = surface.find_of_vertices("on_wire");
     if (on_wire != nullptr && on_wire->values.size() == place.size())
-        for (std::size_t v = 0; v < place.size(); ++v) if (on_wire->values[v] != 0.0) held[place[v]] = 1;
+        for (std::size_t v = 0; v < place.size(); ++v)
+            if (on_wire->values[v] != 0.0) held[place[v]] = 1;
     for (std::size_t i = 0; i < uses.size();) {
         std::size_t j = i;
         while (j < uses.size() && uses[j].ends == uses[i].ends) ++j;
         const bool smooth = j - i == 2 && uses[i].film == uses[i + 1].film;
         if (!smooth) {
-            const bool wire = on_wire == nullptr ? j - i == 1 : held[uses[i].ends[0]] != 0 && held[uses[i].ends[1]] != 0;
+            const bool wire =
+                on_wire == nullptr ? j - i == 1 : held[uses[i].ends[0]] != 0 && held[uses[i].ends[1]] != 0;
             patches->borders.push_back({uses[i].ends, static_cast<int>(j - i), wire && j - i == 1});
         }
         i = j;
     }
 }
 
-/// Means of the triangles' normals, sum (a x b) / (|a|^2 |b|^2) over the edges a, b of a corner: exact inside a film whose
-/// points lie on a sphere, as those of bubbles at rest do. [Max99]
+/// Means of the triangles' normals, sum (a x b) / (|a|^2 |b|^2) over the edges a, b of a corner: exact inside a film
+/// whose points lie on a sphere, as those of bubbles at rest do. [Max99]
 void average_normals(FilmPatches* patches) {
     patches->corner_normal.assign(patches->corner_point.size(), Vec3{});
     for (const auto& t : patches->triangles) {
@@ -104,8 +107,8 @@ void average_normals(FilmPatches* patches) {
 }
 
 /// At a border a film has triangles on one side only, and the mean of their normals is that of a place further in. On a
-/// sphere, and on any quadric, (n_a + n_b) . (x_a - x_b) = 0 along a chord: turns the normals of corners at borders until
-/// this holds with their neighbors, whose own normals are good.
+/// sphere, and on any quadric, (n_a + n_b) . (x_a - x_b) = 0 along a chord: turns the normals of corners at borders
+/// until this holds with their neighbors, whose own normals are good.
 void correct_border_normals(FilmPatches* patches) {
     std::vector<std::uint8_t> at_border(patches->point.size(), 0);
     for (const BorderEdge& edge : patches->borders) at_border[edge.ends[0]] = at_border[edge.ends[1]] = 1;
@@ -118,7 +121,8 @@ void correct_border_normals(FilmPatches* patches) {
                 for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
                     const std::uint32_t a = t[k], b = t[other];
                     if (at_border[patches->corner_point[a]] == 0) continue;
-                    const Vec3 chord = patches->point[patches->corner_point[b]] - patches->point[patches->corner_point[a]];
+                    const Vec3 chord =
+                        patches->point[patches->corner_point[b]] - patches->point[patches->corner_point[a]];
                     const double square = squared_norm(chord);
                     if (square == 0.0) continue;
                     change[a] += -dot(patches->corner_normal[a] + patches->corner_normal[b], chord) / square * chord;

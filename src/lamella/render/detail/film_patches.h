@@ -17,13 +17,13 @@ struct BorderEdge {
 
 /// The films of a frame cut along their borders into smooth pieces: a corner is one point of one film, with one normal.
 struct FilmPatches {
-    std::vector<Vec3> point;                             ///< places in space; equal ones are one
-    std::vector<std::uint32_t> corner_point;             ///< of each corner
-    std::vector<Vec3> corner_normal;                     ///< unit; to the side of the region with the larger number
-    std::vector<std::array<std::uint32_t, 3>> triangles; ///< three corners, all of one film
-    std::vector<std::uint32_t> source;                   ///< of each triangle: its number in the frame
+    std::vector<Vec3> point;                              ///< places in space; equal ones are one
+    std::vector<std::uint32_t> corner_point;              ///< of each corner
+    std::vector<Vec3> corner_normal;                      ///< unit; to the side of the region with the larger number
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three corners, all of one film
+    std::vector<std::uint32_t> source;                    ///< of each triangle: its number in the frame
     std::vector<std::array<std::uint32_t, 3>> source_corner;  ///< of each triangle: the frame's vertices
-    std::vector<std::uint32_t> film;                     ///< of each triangle: which pair of regions it parts, 0, 1, ...
+    std::vector<std::uint32_t> film;  ///< of each triangle: which pair of regions it parts, 0, 1, ...
     std::vector<BorderEdge> borders;
 };
 

@@ -45,7 +45,8 @@ std::vector<std::array<double, 3>> corner_values(const FilmPatches& patches, con
     std::vector<std::array<double, 3>> corners(patches.triangles.size());
     for (std::size_t t = 0; t < corners.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t i = field.place == NamedField::kVertices ? patches.source_corner[t][k] : patches.source[t];
+            const std::size_t i =
+                field.place == NamedField::kVertices ? patches.source_corner[t][k] : patches.source[t];
             if (i >= values.size()) throw InputError(fmt::format("field {} has too few values", field.field->name));
             corners[t][k] = values[i];
         }

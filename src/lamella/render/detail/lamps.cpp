@@ -25,7 +25,8 @@ optics::Rgb Lamp::light(const Vec3& direction) const {
     if (depth <= reach_) return {};
     const double x = dot(direction, right_) / depth, y = dot(direction, up_) / depth;
     // Signed distance from the edge of a rectangle with round corners.
-    const double dx = std::abs(x) - plan_.half_width + plan_.roundness, dy = std::abs(y) - plan_.half_height + plan_.roundness;
+    const double dx = std::abs(x) - plan_.half_width + plan_.roundness,
+                 dy = std::abs(y) - plan_.half_height + plan_.roundness;
     const double outside = dx > 0.0 && dy > 0.0 ? std::sqrt(dx * dx + dy * dy) : std::max(dx, dy);
     const double distance = outside - plan_.roundness;
     if (distance >= 0.5 * plan_.softness) return {};

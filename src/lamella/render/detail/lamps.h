@@ -7,11 +7,11 @@ namespace lamella::render::detail {
 
 /// How a rectangular lamp is described.
 struct LampPlan {
-    double azimuth_deg, elevation_deg;  ///< of its middle
-    double half_width, half_height;     ///< tangents of half the angles under which it is seen
-    double roundness;                   ///< radius of its corners, in the same measure
-    double softness;                    ///< width of its edge, in the same measure
-    optics::Rgb light;                  ///< in its middle
+    double azimuth_deg, elevation_deg;     ///< of its middle
+    double half_width, half_height;        ///< tangents of half the angles under which it is seen
+    double roundness;                      ///< radius of its corners, in the same measure
+    double softness;                       ///< width of its edge, in the same measure
+    optics::Rgb light;                     ///< in its middle
     int panes_across = 1, panes_down = 1;  ///< a window has several, with bars between them
 };
 

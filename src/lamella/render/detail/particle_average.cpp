@@ -17,7 +17,8 @@ ParticleAverage::ParticleAverage(std::span<const Vec3> places, std::span<const d
 
 std::uint64_t ParticleAverage::key(const Vec3& place, int dx, int dy, int dz) const {
     const auto cell = [&](double x, int shift) {
-        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / radius_)) + shift + (1 << 20)) & 0x1fffff;
+        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / radius_)) + shift + (1 << 20)) &
+               0x1fffff;
     };
     return cell(place[0], dx) << 42 | cell(place[1], dy) << 21 | cell(place[2], dz);
 }
@@ -28,7 +29,8 @@ double ParticleAverage::at(const Vec3& place) const {
         for (int dy = -1; dy <= 1; ++dy)
             for (int dz = -1; dz <= 1; ++dz) {
                 const std::uint64_t k = key(place, dx, dy, dz);
-                auto it = std::lower_bound(entries_.begin(), entries_.end(), k, [](const Entry& e, std::uint64_t want) { return e.key < want; });
+                auto it = std::lower_bound(entries_.begin(), entries_.end(), k,
+                                           [](const Entry& e, std::uint64_t want) { return e.key < want; });
                 for (; it != entries_.end() && it->key == k; ++it) {
                     const double square = squared_norm(it->place - place);
                     if (square < nearest) nearest = square, nearest_value = it->value;

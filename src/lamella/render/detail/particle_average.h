@@ -8,8 +8,8 @@
 
 namespace lamella::render::detail {
 
-/// The value of scattered particles at any place: the mean of those nearby, weighted with (1 - d^2/r^2)^2 for distances d
-/// below r, about two of their spacings; where there are none, of the nearest within 2 r, else 0.
+/// The value of scattered particles at any place: the mean of those nearby, weighted with (1 - d^2/r^2)^2 for distances
+/// d below r, about two of their spacings; where there are none, of the nearest within 2 r, else 0.
 class ParticleAverage {
 public:
     ParticleAverage(std::span<const Vec3> places, std::span<const double> values);

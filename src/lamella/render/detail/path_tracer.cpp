@@ -35,7 +35,8 @@ FilmPoint film_point(const FineFilms& films, const FilmCrossing& c) {
     const float w = 1.0F - c.u - c.v;
     FilmPoint point{};
     for (std::size_t k = 0; k < 3; ++k)
-        point.normal[k] = static_cast<double>(w * films.normal[t[0]][k] + c.u * films.normal[t[1]][k] + c.v * films.normal[t[2]][k]);
+        point.normal[k] =
+            static_cast<double>(w * films.normal[t[0]][k] + c.u * films.normal[t[1]][k] + c.v * films.normal[t[2]][k]);
     point.normal *= 1.0 / std::max(norm(point.normal), 1e-12);
     point.value = static_cast<double>(w * films.value[t[0]] + c.u * films.value[t[1]] + c.v * films.value[t[2]]);
     return point;
@@ -67,7 +68,8 @@ void PathTracer::look(const Vec3& origin, std::vector<CameraRay>& rays, std::vec
     paths_.clear();
     for (std::size_t i = 0; i < rays.size(); ++i) {
         rays_.push_back({origin, rays[i].direction});
-        paths_.push_back({kWhite, static_cast<std::uint32_t>(i), 0, rays[i].background ? Behind::kBackground : Behind::kEnvironment});
+        paths_.push_back({kWhite, static_cast<std::uint32_t>(i), 0,
+                          rays[i].background ? Behind::kBackground : Behind::kEnvironment});
     }
     for (int depth = 0; !rays_.empty(); ++depth) {
         next_rays_.clear();
@@ -100,8 +102,10 @@ void PathTracer::shade(const Shot& shot) {
     if (shot.path.depth == 0 && !shot.meeting.films.empty())
         shot.seen.alpha = std::clamp(1.0 - optics::luminance(passed), 0.0, 1.0);
     if (shot.meeting.thing.thing != Thing::kNothing) return show_thing(shot, weight);
-    if (shot.path.behind == Behind::kBackground) shot.seen.light += times(weight, *shot.from.background);
-    else if (shot.path.behind == Behind::kEnvironment) shot.seen.light += times(weight, far_light(shot.ray.direction));
+    if (shot.path.behind == Behind::kBackground)
+        shot.seen.light += times(weight, *shot.from.background);
+    else if (shot.path.behind == Behind::kEnvironment)
+        shot.seen.light += times(weight, far_light(shot.ray.direction));
 }
 
 /// Lets a ray that goes down end at the ground, unless something else is nearer.
@@ -134,7 +138,12 @@ Rgb PathTracer::cross_films(const Shot& shot) {
 }
 
 /// E, and by lot a ray for L - E. A lot of the camera's first films comes from numbers that are even over the samples.
-void PathTracer::show_film(const Shot& shot, const FilmCrossing& crossing, std::size_t number, const Rgb& passed, const Rgb& reflected, const Vec3& normal) {
+void PathTracer::show_film(const Shot& shot,
+                           const FilmCrossing& crossing,
+                           std::size_t number,
+                           const Rgb& passed,
+                           const Rgb& reflected,
+                           const Vec3& normal) {
     const Rgb own = times(passed, reflected), weight = times(shot.path.weight, own);
     const Vec3 image = mirror(shot.ray.direction, normal);
     const Rgb far = far_light(image);
@@ -169,18 +178,20 @@ void PathTracer::show_thing(const Shot& shot, const Rgb& weight) {
     shot.seen.light += times(weight, color + 0.5 * water_reflectance(cosine) * far_light(image));
 }
 
-/// Light that white matte paper throws back, so that it is at most white: lamps that are right for films, which reflect four
-/// percent, would burn paper out. A little of it comes from everywhere.
+/// Light that white matte paper throws back, so that it is at most white: lamps that are right for films, which reflect
+/// four percent, would burn paper out. A little of it comes from everywhere.
 Rgb PathTracer::matte_light(const Shot& shot, const Vec3& place, const Vec3& normal) const {
     constexpr double kEverywhere = 0.10;
     const double full = environment_.brightest_matte();
     const double open = openness(shot, place, normal);
-    return (open * environment_.matte(normal) + kEverywhere * (0.4 + 0.6 * open) * full * kWhite) / ((1.0 + kEverywhere) * full);
+    return (open * environment_.matte(normal) + kEverywhere * (0.4 + 0.6 * open) * full * kWhite) /
+           ((1.0 + kEverywhere) * full);
 }
 
-/// How much of the light that could reach a matte surface does: of a few directions, some drawn where the environment is
-/// bright and some where the surface faces, the share that nothing opaque blocks, by what they would bring. Between 0 and 1
-/// and exact where all or nothing is open; elsewhere its mean is off by a part that falls with the number of directions.
+/// How much of the light that could reach a matte surface does: of a few directions, some drawn where the environment
+/// is bright and some where the surface faces, the share that nothing opaque blocks, by what they would bring. Between
+/// 0 and 1 and exact where all or nothing is open; elsewhere its mean is off by a part that falls with the number of
+/// directions.
 double PathTracer::openness(const Shot& shot, const Vec3& place, const Vec3& normal) const {
     const bool first = shot.path.depth == 0;
     SampleNumbers& numbers = shot.from.numbers;
@@ -200,8 +211,8 @@ double PathTracer::openness(const Shot& shot, const Vec3& place, const Vec3& nor
     return all > 0.0 ? open / all : 1.0;
 }
 
-/// A Plateau border as a round thread of water: light is bent into it and out again, as in an endless cylinder, whose far side
-/// lies where the chord ends. The mirror image on its surface is taken from the environment.
+/// A Plateau border as a round thread of water: light is bent into it and out again, as in an endless cylinder, whose
+/// far side lies where the chord ends. The mirror image on its surface is taken from the environment.
 void PathTracer::show_border(const Shot& shot, const Rgb& weight) {
     const RayGeometry& geometry = stage_.rays->geometry();
     const ThingHit& hit = shot.meeting.thing;
@@ -232,8 +243,8 @@ void PathTracer::show_border(const Shot& shot, const Rgb& weight) {
     send(shot, {place, leaving}, (1.0 - reflected) * (1.0 - reflected) * weight, Behind::kEnvironment);
 }
 
-/// A polished table without an edge: it has the background's color where nothing shades it, and mirrors what stands on it
-/// (not the lamps, whose images would draw the table's outline), less and less with the distance.
+/// A polished table without an edge: it has the background's color where nothing shades it, and mirrors what stands on
+/// it (not the lamps, whose images would draw the table's outline), less and less with the distance.
 void PathTracer::show_ground(const Shot& shot, const Rgb& weight) {
     const Vec3 up{{0.0, 0.0, 1.0}};
     const Vec3& direction = shot.ray.direction;
@@ -243,7 +254,9 @@ void PathTracer::show_ground(const Shot& shot, const Rgb& weight) {
     const double open = away < kShaded ? 1.0 - (1.0 - away / kShaded) * (1.0 - openness(shot, place, up)) : 1.0;
     if (shot.path.depth == 0) shot.seen.alpha = 1.0 - open * (1.0 - shot.seen.alpha);
     const bool backdrop = shot.path.behind == Behind::kBackground;
-    const Rgb color = backdrop ? *shot.from.background : shot.path.behind == Behind::kNothing ? Rgb{} : stage_.ground->color;
+    const Rgb color = backdrop                               ? *shot.from.background
+                      : shot.path.behind == Behind::kNothing ? Rgb{}
+                                                             : stage_.ground->color;
     shot.seen.light += open * times(weight, color);
     if (shot.path.depth > 1) return;
     const double fresnel = 0.05 + 0.95 * std::pow(std::clamp(1.0 + direction[2], 0.0, 1.0), 5.0);

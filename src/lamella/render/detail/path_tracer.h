@@ -16,7 +16,7 @@ struct CameraRay {
 /// Light and opacity of one ray from the camera.
 struct Seen {
     optics::Rgb light;
-    double alpha = 0.0;   ///< 0 where nothing but the background is seen
+    double alpha = 0.0;  ///< 0 where nothing but the background is seen
 };
 
 /// Follows rays through a stage, many at a time. It holds scratch memory: one per thread at a time.
@@ -52,7 +52,12 @@ private:
     void shade(const Shot& shot);
     void meet_ground(const Shot& shot) const;
     optics::Rgb cross_films(const Shot& shot);
-    void show_film(const Shot& shot, const FilmCrossing& crossing, std::size_t number, const optics::Rgb& passed, const optics::Rgb& reflected, const Vec3& normal);
+    void show_film(const Shot& shot,
+                   const FilmCrossing& crossing,
+                   std::size_t number,
+                   const optics::Rgb& passed,
+                   const optics::Rgb& reflected,
+                   const Vec3& normal);
     void show_thing(const Shot& shot, const optics::Rgb& weight);
     void show_border(const Shot& shot, const optics::Rgb& weight);
     void show_ground(const Shot& shot, const optics::Rgb& weight);

@@ -38,8 +38,8 @@ void cross_film(const RTCFilterFunctionNArguments* args) {
         if (args->valid[i] != -1) continue;
         args->valid[i] = 0;
         context->meetings[RTCRayN_id(args->ray, args->N, i)].films.push_back(
-            {RTCRayN_tfar(args->ray, args->N, i), RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
-             RTCHitN_v(args->hit, args->N, i)});
+            {RTCRayN_tfar(args->ray, args->N, i), RTCHitN_primID(args->hit, args->N, i),
+             RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i)});
     }
 }
 
@@ -157,7 +157,8 @@ RayScene::RayScene(RayGeometry geometry) : geometry_(std::move(geometry)), impl_
         impl_->attach(balls, kBalls, kSeeThrough | kOpaque);
     }
     rtcCommitScene(impl_->scene);
-    if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE) throw NumericalError("Embree cannot build its tree of boxes");
+    if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE)
+        throw NumericalError("Embree cannot build its tree of boxes");
 }
 
 RayScene::~RayScene() = default;
@@ -166,7 +167,8 @@ void RayScene::trace(std::span<const RayStart> rays, Bundle bundle, std::vector<
     if (meetings->size() < rays.size()) meetings->resize(rays.size());
     Context context{};
     rtcInitIntersectContext(&context.base);
-    context.base.flags = bundle == Bundle::kAlike ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.base.flags =
+        bundle == Bundle::kAlike ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     for (std::size_t first = 0; first < rays.size(); first += kPacket) {
         const auto count = static_cast<unsigned>(std::min<std::size_t>(kPacket, rays.size() - first));
         context.meetings = &(*meetings)[first];
@@ -203,7 +205,8 @@ bool can_trace_rays() { return true; }
 struct RayScene::Impl {};
 
 RayScene::RayScene(RayGeometry) {
-    throw InputError("this lamella was built without Embree, which pictures need; install libembree-dev and build again");
+    throw InputError(
+        "this lamella was built without Embree, which pictures need; install libembree-dev and build again");
 }
 RayScene::~RayScene() = default;
 void RayScene::trace(std::span<const RayStart>, Bundle, std::vector<RayMeeting>*) const {}

@@ -17,7 +17,7 @@ struct RayGeometry {
     std::vector<std::array<float, 4>> thread_points;  ///< x, y, z, radius
     std::vector<std::uint32_t> thread_segments;       ///< first point of each segment, which runs to the next point
     std::vector<std::uint8_t> segment_is_wire;
-    std::vector<std::array<float, 4>> balls;          ///< x, y, z, radius
+    std::vector<std::array<float, 4>> balls;  ///< x, y, z, radius
 };
 
 /// A film crossed by a ray.
@@ -41,8 +41,8 @@ struct RayStart {
     Vec3 origin, direction;  ///< unit direction
 };
 
-/// What a ray meets: the first thing, and the films before it, sorted by distance. A film met at the edge between two of its
-/// triangles counts once.
+/// What a ray meets: the first thing, and the films before it, sorted by distance. A film met at the edge between two
+/// of its triangles counts once.
 struct RayMeeting {
     ThingHit thing;
     std::vector<FilmCrossing> films;

@@ -11,8 +11,9 @@ namespace lamella::render::detail {
 
 /// The numbers in [0, 1) that one sample of one pixel uses.
 ///
-/// The first few are spread evenly over the samples of a pixel (additive recurrences, shifted for each pixel, with powers
-/// of the root of x^(d+1) = x + 1 as steps: the golden ratio's relatives in d dimensions); the others are random.
+/// The first few are spread evenly over the samples of a pixel (additive recurrences, shifted for each pixel, with
+/// powers of the root of x^(d+1) = x + 1 as steps: the golden ratio's relatives in d dimensions); the others are
+/// random.
 class SampleNumbers {
 public:
     SampleNumbers(const RandomBits& pixel, int sample) : sample_(sample) {
@@ -25,7 +26,8 @@ public:
     Vec2 place() const { return {{even(0, 0.7548776662466927), even(1, 0.5698402909980532)}}; }
     /// Four numbers for what the ray meets first.
     double lot(std::size_t k) const {  // k = 0 to 3
-        constexpr std::array<double, 4> kStep{0.8566748838545029, 0.7338918566271260, 0.6287067210378087, 0.5385972572236101};
+        constexpr std::array<double, 4> kStep{0.8566748838545029, 0.7338918566271260, 0.6287067210378087,
+                                              0.5385972572236101};
         return even(2 + k, kStep[k]);
     }
     double next() { return draw(&state_); }

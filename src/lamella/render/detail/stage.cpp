@@ -40,7 +40,8 @@ double mean_edge(const FilmPatches& patches) {
     double sum = 0.0;
     for (const auto& t : patches.triangles)
         for (std::size_t k = 0; k < 3; ++k)
-            sum += norm(patches.point[patches.corner_point[t[k]]] - patches.point[patches.corner_point[t[(k + 1) % 3]]]);
+            sum +=
+                norm(patches.point[patches.corner_point[t[k]]] - patches.point[patches.corner_point[t[(k + 1) % 3]]]);
     return sum / (3.0 * static_cast<double>(patches.triangles.size()));
 }
 
@@ -57,8 +58,8 @@ void add_threads(const FilmPatches& patches, int pieces, double width, detail::R
                 geometry->thread_segments.push_back(static_cast<std::uint32_t>(geometry->thread_points.size()));
                 geometry->segment_is_wire.push_back(thread.wire ? 1 : 0);
             }
-            geometry->thread_points.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]),
-                                               static_cast<float>(radius)});
+            geometry->thread_points.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]),
+                                               static_cast<float>(p[2]), static_cast<float>(radius)});
         }
     }
 }
@@ -79,28 +80,36 @@ void add_balls(const sim::Frame& frame, const PictureOptions& options, Stage* st
     sim::Field field = radius_field(points);
     if (!options.field.empty() && options.field != "radius") {
         const auto found = find_fields(frame, options.field);
-        const auto it = std::find_if(found.begin(), found.end(), [](const NamedField& f) { return f.place == NamedField::kPoints; });
-        if (it == found.end()) throw InputError(fmt::format("field {} belongs to the films, not to the points", options.field));
+        const auto it = std::find_if(found.begin(), found.end(),
+                                     [](const NamedField& f) { return f.place == NamedField::kPoints; });
+        if (it == found.end())
+            throw InputError(fmt::format("field {} belongs to the films, not to the points", options.field));
         field = *it->field;
     }
     const std::vector<double> values = by_thickness ? thickness->field->values : scalar_values(field);
-    if (!values.empty() && values.size() != points.size()) throw InputError(fmt::format("field {} has {} values for {} points", field.name, values.size(), points.size()));
+    if (!values.empty() && values.size() != points.size())
+        throw InputError(fmt::format("field {} has {} values for {} points", field.name, values.size(), points.size()));
     const ColorScale scale = options.scale ? *options.scale : scale_for(field, values);
     if (!options.field.empty()) stage->scale = scale;
     const optics::FilmColors colors;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Vec3 p = (points.position[i] - stage->bounds.center) / stage->bounds.radius;
         const double radius = balls ? points.radius[i] / stage->bounds.radius : point_radius(points);
-        geometry->balls.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), static_cast<float>(radius)});
+        geometry->balls.push_back(
+            {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), static_cast<float>(radius)});
         constexpr double kThickFilm = 0.04;  // reflectance that shows as half of white
         stage->ball_color.push_back(values.empty() ? optics::Rgb{{0.6, 0.6, 0.6}}
-                                    : by_thickness ? optics::desaturate(0.5 / kThickFilm * colors.reflected(values[i], 1.0))
-                                                   : scale.color(values[i]));
+                                    : by_thickness
+                                        ? optics::desaturate(0.5 / kThickFilm * colors.reflected(values[i], 1.0))
+                                        : scale.color(values[i]));
     }
 }
 
 /// What each corner of the films shows: the field, or the thickness [m].
-std::vector<std::array<double, 3>> film_values(const sim::Frame& frame, const FilmPatches& patches, const PictureOptions& options, Stage* stage) {
+std::vector<std::array<double, 3>> film_values(const sim::Frame& frame,
+                                               const FilmPatches& patches,
+                                               const PictureOptions& options,
+                                               Stage* stage) {
     if (!options.field.empty()) {
         for (const NamedField& f : find_fields(frame, options.field)) {
             if (f.place == NamedField::kPoints) continue;
@@ -110,19 +119,24 @@ std::vector<std::array<double, 3>> film_values(const sim::Frame& frame, const Fi
         }
     }
     if (options.thickness <= 0.0)
-        if (const auto field = thickness_field(frame); field && field->place != NamedField::kPoints) return corner_values(patches, *field);
+        if (const auto field = thickness_field(frame); field && field->place != NamedField::kPoints)
+            return corner_values(patches, *field);
     return {patches.triangles.size(), {options.thickness, options.thickness, options.thickness}};
 }
 
 /// Thicknesses that vary within a triangle: from particles, or assumed.
-void refine_thickness(const sim::Frame& frame, const FilmPatches& patches, const PictureOptions& options, Stage* stage) {
+void refine_thickness(const sim::Frame& frame,
+                      const FilmPatches& patches,
+                      const PictureOptions& options,
+                      Stage* stage) {
     if (stage->films_show_field) return;
     stage->thickness_origin = "given";
     if (options.thickness > 0.0) return;
     const auto field = thickness_field(frame);
     stage->thickness_origin = "frame";
     if (field && field->place != NamedField::kPoints) return;
-    stage->thickness_origin = field ? "particles" : "assumed: films that have drained for a while, 0.2 um above to 0.8 um below";
+    stage->thickness_origin =
+        field ? "particles" : "assumed: films that have drained for a while, 0.2 um above to 0.8 um below";
     const auto place = [&](std::size_t i) {
         const auto& p = stage->films.position[i];
         return Vec3{{static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])}};
@@ -131,7 +145,8 @@ void refine_thickness(const sim::Frame& frame, const FilmPatches& patches, const
         std::vector<Vec3> points;
         for (const Vec3& p : frame.points.position) points.push_back((p - stage->bounds.center) / stage->bounds.radius);
         const detail::ParticleAverage average(points, field->field->values);
-        parallel_for(stage->films.position.size(), [&](std::size_t i) { stage->films.value[i] = static_cast<float>(average.at(place(i))); });
+        parallel_for(stage->films.position.size(),
+                     [&](std::size_t i) { stage->films.value[i] = static_cast<float>(average.at(place(i))); });
         return;
     }
     const std::size_t per_triangle = stage->films.position.size() / patches.triangles.size();

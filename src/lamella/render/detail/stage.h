@@ -20,12 +20,12 @@ struct Ground {
 
 /// Everything that rays need to know of a frame, moved and scaled so that it fills the unit ball around the origin.
 struct Stage {
-    Bounds bounds;                        ///< in the frame
-    FineFilms films;                      ///< their values: thickness [m], or the field that colors them
+    Bounds bounds;    ///< in the frame
+    FineFilms films;  ///< their values: thickness [m], or the field that colors them
     bool films_show_field = false;
     std::string thickness_origin = "none";  ///< see Picture
     std::vector<optics::Rgb> ball_color;
-    std::optional<ColorScale> scale;      ///< where a field colors things
+    std::optional<ColorScale> scale;  ///< where a field colors things
     std::optional<Ground> ground;
     std::unique_ptr<RayScene> rays;
 };

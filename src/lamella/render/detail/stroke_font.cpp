@@ -87,6 +87,7 @@ constexpr auto kGlyphs = std::to_array<Glyph>({
     {'>', "063402"},
     {'^', "061826"},
     {'_', "0141"},
+    {'|', "0901"},
 });
 
 }  // namespace
