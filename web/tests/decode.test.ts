@@ -159,10 +159,10 @@ test("numbers are written as people read them", () => {
   assert.equal(numberText(null), "unknown");
   assert.equal(unitText("kg m/s^2"), "kg\u202fm/s²");
   assert.equal(quantityText(3, "-"), "3");
-  assert.deepEqual(tickTexts([1.2e-4, 1.22e-4, 1.24e-4], 2e-6), { texts: ["1.20", "1.22", "1.24"], factor: "10⁻⁴"   assert.equal(quantityText(120, "deg"), "120°");
-});
+  assert.deepEqual(tickTexts([1.2e-4, 1.22e-4, 1.24e-4], 2e-6), { texts: ["1.20", "1.22", "1.24"], factor: "10⁻⁴" });
   assert.deepEqual(tickTexts([0, 0.5, 1], 0.5).texts, ["0.0", "0.5", "1.0"]);
   assert.deepEqual(tickTexts([0.975, 1, 1.025], 0.025).texts, ["0.975", "1.000", "1.025"]);
+  assert.equal(quantityText(120, "deg"), "120°");
 });
 
 test("unknown values do not count in a range", () => {
