@@ -178,6 +178,25 @@ TEST(VortexSheetSolver, SendsABubbleOffWithTheMomentumOfItsAirAndOfTheAirThatItP
     }
 }
 
+TEST(VortexSheetSolver, MovesNoFilmFartherThanAQuarterOfAnEdgeInAStep) {
+    const auto solver = solver_of(R"(
+[[bubble]]
+radius = 1.0
+velocity = [10.0, 0.0, 0.0]
+[resolution]
+edge_length = 0.4
+[time]
+end = 1.0)");
+    solver->start({});
+    for (int step = 0; step < 3; ++step) {
+        const double dt = solver->advance(1.0).step;
+        const auto scalars = solver->scalars();
+        const auto fastest =
+            std::find_if(scalars.begin(), scalars.end(), [](const auto& s) { return s.name == "max_velocity"; });
+        EXPECT_LT(dt * fastest->value, 1.2 * 0.25 * 0.4);  // a little faster than in the step before
+    }
+}
+
 TEST(VortexSheetSolver, PullsABumpIn) {
     // A film that bulges is pulled back: tension lowers the area before anything else happens.
     mesh::FoamMesh sphere = mesh::spheres({{Vec3{}, 1.0}}, 0.3);

@@ -72,7 +72,7 @@ double VortexSheetSolver::break_even() const {
 
 bool VortexSheetSolver::starts_implicitly() const {
     if (options_.tension != Tension::kAuto) return options_.tension == Tension::kImplicit;
-    return implicit_possible() && std::min(farthest_step(), implicit_limit()) > break_even();
+    return implicit_possible() && farthest_step(implicit_limit()) > break_even();
 }
 
 /// A semi-implicit step, if there is to be one now.
@@ -84,7 +84,7 @@ std::optional<ImplicitStep> VortexSheetSolver::try_implicit(double time_limit) c
         throw NumericalError(fmt::format("t = {:.6g} s: a wire runs through a film now; vortex_sheet.tension = \"auto\" can "
                                          "go on from here",
                                          time_));
-    double dt = fitted(std::min(farthest_step(), implicit_limit()), time_limit);
+    double dt = fitted(farthest_step(implicit_limit()), time_limit);
     constexpr double kTooFar = 0.5;  // edges: twice what was planned
     int evaluations = 0;
     while (!automatic || dt > break_even()) {

@@ -125,6 +125,7 @@ void VortexSheetSolver::give_start_velocities() {
                 sum_options(), phi_);
     fix_gauge(topology_, phi_);
     impulse_ = impulse(mesh(), topology_, geometry, phi_);
+    velocity_ = flow_at(mesh(), topology_, geometry, phi_, {}, sum_options()).velocity;  // for the first step's length
 }
 
 /// The smallest change of a motion after which it leaves all volumes as they are. No flow of air has another, and
@@ -168,20 +169,19 @@ sim::StepReport VortexSheetSolver::advance(double time_limit) {
 }
 
 double VortexSheetSolver::choose_step(double time_limit) const {
-    return fitted(std::min(options_.step_safety * capillary_limit(), farthest_step()), time_limit);
+    return fitted(farthest_step(options_.step_safety * capillary_limit()), time_limit);
 }
 
-/// The step that the speed of films and wires allows, and the user.
-double VortexSheetSolver::farthest_step() const {
-    double dt = options_.largest_step > 0.0 ? options_.largest_step : std::numeric_limits<double>::infinity();
+/// The part of a step that the speed of films and wires allows, and the user.
+double VortexSheetSolver::farthest_step(double dt) const {
+    if (options_.largest_step > 0.0) dt = std::min(dt, options_.largest_step);
     double fastest = 0.0;
     for (const Vec3& u : velocity_) fastest = std::max(fastest, norm(u));
     for (const film::Wire& wire : input_.films->wires) fastest = std::max(fastest, norm(wire.velocity));
     // A film that snaps sets the step, down to a twentieth: what is faster still are single vertices out of order.
     constexpr double kShortest = 0.05;
-    return fastest > 0.0
-               ? std::min(dt, std::max(kShortest * dt, kFarthest * input_.films->edge_length / fastest))
-               : dt;
+    if (dt * fastest <= kFarthest * input_.films->edge_length) return dt;
+    return std::max(kShortest * dt, kFarthest * input_.films->edge_length / fastest);
 }
 
 /// A step that ends where an event or an output does.

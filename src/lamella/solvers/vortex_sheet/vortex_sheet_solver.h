@@ -48,7 +48,7 @@ private:
     void keep_volumes_of(IdVector<mesh::VertexId, Vec3>& motion) const;
     // The stages of a step, in order.
     double choose_step(double time_limit) const;
-    double farthest_step() const;
+    double farthest_step(double dt) const;
     double fitted(double dt, double time_limit) const;
     void kick(double dt);
     Circulation tension_rate(const mesh::FoamMesh& mesh, const SheetGeometry& geometry) const;
