@@ -27,7 +27,7 @@ MelpSolver::MelpSolver(const Options& options, const sim::SolverInput& input) : 
                                      "as much as material.surface_tension = {:.3g} N/m has",
                                      options_.surfactant_concentration,
                                      law_.thermal_energy() * options_.surfactant_concentration, law_.reference_tension));
-    refuse_unknown_films(*input_.films);
+    refuse_unknown_films(*input_.films, options_);
 }
 
 void MelpSolver::start(const sim::StartContext&) {

@@ -125,7 +125,7 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
     const Spread film = spread_of(films_.thickness, geometry_.area);
     std::vector<sim::Scalar> scalars{
         {"energy_kinetic", "J", kinetic, "of the film, and of the air that swings with it"},
-        {"energy_surface", "J", surface, "tension of both interfaces * area"},
+        {"energy_surface", "J", surface, "tension of both interfaces * area; a film between two bubbles counts twice"},
         {"particle_area", "m^2", sum(geometry_.area), "of the films, summed over coarse particles"},
         {"particle_volume", "m^3", gas, "of all bubbles, summed over coarse particles"},
         {"swept_volume_error", "-", volume_error, "largest relative difference of that and what the films have swept"},

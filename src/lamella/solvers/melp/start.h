@@ -26,8 +26,8 @@ struct Start {
 /// @throws InputError  films that this solver does not know, or no bubble
 Start start_particles(const film::Problem& films, const Options& options, std::uint64_t seed);
 
-/// @throws InputError  films that this solver does not know
-void refuse_unknown_films(const film::Problem& films);
+/// @throws InputError  films that this solver does not know, or several bubbles that it could not follow through a contact
+void refuse_unknown_films(const film::Problem& films, const Options& options);
 
 /// `count` points spread evenly over the unit sphere along a spiral: point i has height 1 - (2 i + 1) / count and turns by
 /// the golden angle from the one before.
