@@ -20,7 +20,6 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,8 +39,6 @@ struct RenderOptions {
     std::string format = "png";
     double rate = 30.0;
     int images = 2;
-    std::string period;
-    std::optional<sim::Box> box;  ///< what period says
     int bits = 8;
     int threads = 0;
     std::string progress;
@@ -89,25 +86,9 @@ void read_camera(const std::string& text, render::View* view) {
     if (values.size() == 3) view->zoom = values[2];
 }
 
-/// "1.26,1.26,1.26": a box for films whose frames do not say that they are periodic; 0: not along this axis.
-sim::Box read_period(const std::string& text) {
-    const std::string what = fmt::format("--period {} is not X,Y,Z such as 2,2,2", text);
-    const std::vector<double> values = numbers(text, what);
-    if (values.size() != 3) throw InputError(what);
-    sim::Box box;
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (values[k] < 0.0) throw InputError(what + "; lengths are not negative");
-        box.lengths[k] = values[k];
-        box.periodic[k] = values[k] > 0.0;
-    }
-    return box;
-}
-
 /// The frame as it is drawn: films in a periodic box with their images.
 sim::Frame shown_frame(const PictureSource& source, std::size_t index, const RenderOptions& options) {
-    sim::Frame frame = source.frame(index);
-    if (options.box) frame.box = options.box;
-    return render::periodic_images(std::move(frame), options.images);
+    return render::periodic_images(source.frame(index), options.images);
 }
 
 /// What is flat is looked at from above, unless the camera is told otherwise.
@@ -229,7 +210,6 @@ void complete(const PictureSource& source, const std::vector<std::size_t>& chose
         throw InputError(fmt::format("{}: a film ends in .mp4", options->video));
     if (is_flat(source.frame(chosen[0]))) picture.view = {.azimuth_deg = -90.0, .elevation_deg = 90.0, .zoom = 1.3};
     if (!picture.field.empty()) picture.view.shift = 0.09;
-    if (!options->period.empty()) options->box = read_period(options->period);
     if (!options->camera.empty()) read_camera(options->camera, &picture.view);
     if (options->frame == "all") share_view(source, chosen, options);
 }
@@ -349,8 +329,6 @@ void add_render_command(CLI::App& app, int& exit_code) {
     command->add_option("--images", options->images, "Of films in a periodic box, along each axis; by default 2")
         ->check(CLI::Range(1, 8))
         ->type_name("N");
-    command->add_option("--period", options->period, "Lengths of the periodic box, for films whose frames have none")
-        ->type_name("X,Y,Z");
     command->add_option("--exposure", picture.exposure, "Multiplies all light; by default 1")->type_name("F");
     command->add_option("--seed", picture.seed, "Of the noise")->type_name("N");
     command->add_option("--bits", options->bits, "Per channel of a .png: 8 or 16")

@@ -64,8 +64,8 @@ quadruple-bubble|equilibrium/quadruple-bubble-small|last||Four bubbles of equal 
 cluster-6|equilibrium/cluster-6-small|last|--environment window --exposure 0.8|Six bubbles of equal volume
 cluster-13|equilibrium/cluster-13-small|last|--exposure 0.7|Thirteen bubbles: one inside, twelve around it
 inflate-and-pop|equilibrium/inflate-and-pop-small|last|--ground|Bubbles inflated, others popped
-kelvin|equilibrium/kelvin-small|last|--period 1.259921,1.259921,1.259921 --exposure 0.8|Kelvin's foam, eight unit cells
-weaire-phelan|equilibrium/weaire-phelan-small|last|--period 2,2,2 --exposure 0.7|The foam of Weaire and Phelan, eight unit cells
+kelvin|equilibrium/kelvin-small|last|--exposure 0.8|Kelvin's foam, eight unit cells
+weaire-phelan|equilibrium/weaire-phelan-small|last|--exposure 0.7|The foam of Weaire and Phelan, eight unit cells
 coarsening-2d|bubble/coarsening-2d-small|last|--field radius|A flat foam coarsens: the large grow, the small vanish
 coarsening-3d|bubble/coarsening-3d-small|last|--ground|A foam coarsens
 flow-2d|bubble/flow-2d-small|last|--field velocity|A flat foam flows

@@ -155,7 +155,7 @@ class Pictures(ProgramTest):
                                  (("--background", "blue"), "#1a2b3c"), (("--out", "a.bmp"), ".png or .exr"),
                                  (("--frame", "900"), "900"), (("--thickness", "3 kg"), "3 kg"), (("--video", "a.avi"), ".mp4"),
                                  (("--samples", "0"), "samples"),
-                                 (("--frame", "all", "--out", "a.png"), "folder"), (("--period", "1,2"), "X,Y,Z"),
+                                 (("--frame", "all", "--out", "a.png"), "folder"),
                                  (("--video", "a.mp4", "--format", "exr"), ".png"), (("--environment", "no.hdr"), "")):
             result = lamella("render", run, *arguments, "--progress", "none", cwd=self.folder)
             if words:
