@@ -336,7 +336,7 @@ void VortexSheetSolver::edit_mesh(Edit&& edit) {
 /// Such jumps are large beside the velocities; those of a swing are about twice the velocities and left as they are.
 void VortexSheetSolver::heal(const std::vector<VertexId>& edited) {
     if (edited.empty() || options_.healing == 0) return;
-    constexpr double kHidden = 6.0;  // jump over mean speed: more than any swing of low order has
+    constexpr double kHidden = 4.0;  // jump over mean speed: more than any swing of low order has
     const double most = kHidden * mean_speed();
     const std::vector<Vec3> strength = face_strengths(mesh(), topology_, phi_);
     const auto hides_flow = [&](VertexId v) {
