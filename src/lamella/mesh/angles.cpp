@@ -157,6 +157,7 @@ double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cros
 std::vector<TripleEdgeAngles> triple_edge_angles(const FoamMesh& mesh, AngleMethod method) {
     const EdgeFaces edges = edge_faces(mesh);
     const VertexCorners corners = vertex_corners(mesh);
+    const int rings = method == AngleMethod::kWide ? 2 : 1;
     std::vector<TripleEdgeAngles> result;
     for (std::size_t e = 0; e < edges.size(); ++e) {
         const auto regions = triple_regions(mesh, edges, e);
@@ -165,7 +166,7 @@ std::vector<TripleEdgeAngles> triple_edge_angles(const FoamMesh& mesh, AngleMeth
         std::array<Vec3, 3> film;
         for (std::size_t i = 0; i < 3; ++i)
             film[i] = method == AngleMethod::kFlat ? detail::flat_film_direction(mesh, uses[i])
-                                                   : detail::quadratic_film_direction(mesh, corners, uses[i]);
+                                                   : detail::quadratic_film_direction(mesh, corners, uses[i], rings);
         result.push_back({edges.edge[e].a, edges.edge[e].b, norm(edge_vector(mesh, uses[0])), *regions,
                           angles_around(mesh, uses, *regions, film, detail::direction(edge_vector(mesh, uses[0])))});
     }

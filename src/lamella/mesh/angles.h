@@ -16,6 +16,7 @@ namespace lamella::mesh {
 enum class AngleMethod : std::uint8_t {
     kFlat,       ///< from the face or edge at the end: off by O(h) on curved films, even if they are at rest
     kQuadratic,  ///< from a quadratic patch or arc through the vertices near by: O(h^2)
+    kWide,       ///< the same with the patches of films twice as wide: for films of unevenly spread vertices
 };
 
 /// The angles around one edge of a triple line, a < b.
@@ -33,6 +34,8 @@ struct TripleEdgeAngles {
 /// kQuadratic: a film's heights over its face at the edge are fitted, by weighted least squares, with a quadratic
 /// polynomial over the vertices of that film around the face. Where the film has too few vertices for that, the face
 /// itself is taken.
+/// kWide: over the vertices two edges around the face. Where vertices have slid along their films and lie off them by
+/// O(h^2), as those of discrete films at rest do, the slope of the narrow patch is off by O(h), this one by about half.
 /// @returns  ordered by (a, b)
 std::vector<TripleEdgeAngles> triple_edge_angles(const FoamMesh& mesh, AngleMethod method);
 

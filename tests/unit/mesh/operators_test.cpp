@@ -10,6 +10,7 @@
 #include "lamella/mesh/mean_curvature.h"
 #include "lamella/mesh/quality.h"
 #include "lamella/mesh/shapes/power_cluster.h"
+#include "lamella/mesh/shapes/standard_clusters.h"
 #include "lamella/mesh/vertex_area.h"
 #include "lamella/mesh/vertex_normals.h"
 #include "lamella/core/error.h"
@@ -190,6 +191,22 @@ TEST(Angles, OfCurvedFilmsConvergeAtOrderOneFlatAndTwoWithPatches) {
     EXPECT_NEAR(flat, 1.0, 0.2);
     EXPECT_GT(patch, 1.7);
     EXPECT_LT(error(AngleMethod::kQuadratic, 0.05), 0.1 * error(AngleMethod::kFlat, 0.05));
+}
+
+TEST(Angles, FromWidePatchesForgiveVerticesThatLieOffTheirFilms) {
+    // A double bubble with its vertices on the spheres, and the same with every vertex off them by a fraction of the sag of
+    // an edge, h^2 / 8.
+    const double h = 0.1;
+    FoamMesh exact = double_bubble(double_bubble_of_radii(1.0, 1.0), h);
+    FoamMesh rough = exact;
+    for (const VertexId v : rough.position.ids())
+        for (std::size_t k = 0; k < 3; ++k)
+            rough.position[v][k] += 0.1 * h * h * std::sin(12.9898 * static_cast<double>(3 * index(v) + k));
+    const auto degrees = [](const FoamMesh& mesh, AngleMethod method) {
+        return 57.2958 * deviation_from_plateau(triple_edge_angles(mesh, method)).mean;
+    };
+    EXPECT_LT(degrees(exact, AngleMethod::kWide), 0.3);  // 0.14
+    EXPECT_LT(degrees(rough, AngleMethod::kWide), 0.7 * degrees(rough, AngleMethod::kQuadratic));  // 0.28 and 0.50
 }
 
 TEST(Angles, AtATetrahedralJunctionAreExact) {

@@ -197,6 +197,28 @@ end = 1.0)");
     }
 }
 
+TEST(VortexSheetSolver, StopsWhenFixedTrianglesCannotFollowTheFilms) {
+    // A cluster of balls takes its shape with large motions along the films.
+    const auto solver = solver_of(R"(
+seed = 2
+[foam]
+count = 6
+volume = 1.0
+[resolution]
+edge_length = 0.25
+[time]
+end = 3.0
+[vortex_sheet]
+remeshing = false)");
+    solver->start({});
+    try {
+        while (solver->time() < 3.0) solver->advance(3.0);
+        ADD_FAILURE() << "it went on";
+    } catch (const NumericalError& error) {
+        EXPECT_NE(std::string(error.what()).find("remeshing = true"), std::string::npos) << error.what();
+    }
+}
+
 TEST(VortexSheetSolver, PullsABumpIn) {
     // A film that bulges is pulled back: tension lowers the area before anything else happens.
     mesh::FoamMesh sphere = mesh::spheres({{Vec3{}, 1.0}}, 0.3);

@@ -43,9 +43,8 @@ damping = 2.0)");
     const double error = area_error(*solver, exact);
     report("double bubble", *solver, error);
     EXPECT_LT(std::abs(error), 5.0 / faces(*solver) + 1e-3);
-    // Angles: 0.93 degrees in the mean here and 0.70 at 6,605 faces, where the area is off by 3.8e-4: what is left is the fit
-    // of patches to vertices that moved along the films.
-    EXPECT_LT(scalar(*solver, "film_angle_mean_error"), 1.2);
+    // 0.33 degrees here. Patches one edge wide give 0.98: vertices next to the line lie off their films, at any edge length.
+    EXPECT_LT(scalar(*solver, "film_angle_mean_error"), 0.5);
     EXPECT_LT(course.volume_error, 1e-6);
 }
 

@@ -36,10 +36,10 @@ void grow(const FoamMesh& mesh, const VertexCorners& corners, const Face& film, 
         }
 }
 
-std::vector<PatchVertex> patch_around(const FoamMesh& mesh, const VertexCorners& corners, FaceId f) {
+std::vector<PatchVertex> patch_around(const FoamMesh& mesh, const VertexCorners& corners, FaceId f, int rings) {
     std::vector<PatchVertex> patch;
     for (std::size_t k = 0; k < 3; ++k) patch.push_back({mesh.faces[f].vertices[k], mesh.corner(f, k)});
-    grow(mesh, corners, mesh.faces[f], patch);
+    for (int ring = 0; ring < rings; ++ring) grow(mesh, corners, mesh.faces[f], patch);
     if (patch.size() < kEnoughPoints) grow(mesh, corners, mesh.faces[f], patch);
     return patch;
 }
@@ -51,9 +51,9 @@ Vec3 flat_film_direction(const FoamMesh& mesh, const EdgeUse& use) {
     return direction(cross(doubled_area_vector(x), opposite_edge(x, use.opposite)));
 }
 
-Vec3 quadratic_film_direction(const FoamMesh& mesh, const VertexCorners& corners, const EdgeUse& use) {
+Vec3 quadratic_film_direction(const FoamMesh& mesh, const VertexCorners& corners, const EdgeUse& use, int rings) {
     const Vec3 flat = flat_film_direction(mesh, use);
-    const std::vector<PatchVertex> patch = patch_around(mesh, corners, use.face);
+    const std::vector<PatchVertex> patch = patch_around(mesh, corners, use.face, rings);
     if (patch.size() < kEnoughPoints) return flat;
 
     const Triangle x = triangle(mesh, use.face);

@@ -14,6 +14,7 @@ Vec3 flat_film_direction(const FoamMesh& mesh, const EdgeUse& use);
 
 /// The same for the curved film that the face belongs to, at the middle of the edge, from a quadratic patch.
 /// The direction of the face if the film has too few vertices near by.
-Vec3 quadratic_film_direction(const FoamMesh& mesh, const VertexCorners& corners, const EdgeUse& use);
+/// @param rings  of faces around the face that the patch has, at least
+Vec3 quadratic_film_direction(const FoamMesh& mesh, const VertexCorners& corners, const EdgeUse& use, int rings = 1);
 
 }  // namespace lamella::mesh::detail

@@ -76,7 +76,7 @@ std::vector<sim::Scalar> VortexSheetSolver::scalars() const {
     const double kinetic = density * observed().energy();
     const Vec3 p = density * impulse(mesh(), topology_, geometry, phi_);
     const Vec3 l = density * angular_impulse(mesh(), topology_, geometry, phi_);
-    const auto films_apart = mesh::deviation_from_plateau(mesh::triple_edge_angles(mesh(), mesh::AngleMethod::kQuadratic));
+    const auto films_apart = mesh::deviation_from_plateau(mesh::triple_edge_angles(mesh(), mesh::AngleMethod::kWide));
     const auto lines_apart = mesh::deviation_from_plateau(mesh::junction_angles(mesh(), mesh::AngleMethod::kQuadratic));
     double fastest = 0.0;
     for (const Vec3& u : observed().velocity) fastest = std::max(fastest, norm(u));

@@ -5,6 +5,7 @@
 #include "lamella/film/tension.h"
 #include "lamella/mesh/area.h"
 #include "lamella/mesh/quality.h"
+#include "lamella/mesh/smoothing.h"
 #include "lamella/mesh/staged_move.h"
 #include "lamella/mesh/volume.h"
 #include "lamella/mesh/volume_projection.h"
@@ -19,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace lamella::vortex_sheet {
@@ -67,10 +69,12 @@ void VortexSheetSolver::start(const sim::StartContext&) {
 void VortexSheetSolver::settle_volumes() {
     constexpr double kSettled = 1e-6;  // relative
     constexpr int kMostRounds = 200;
+    constexpr int kEven = 20;  // rounds at least, once begun: triangles become even
     for (int round = 0; round < kMostRounds; ++round) {
         const mesh::VolumeProjection projection = mesh::volume_projection(mesh());
-        if (projection.error < kSettled) break;
-        mesh::staged_move(*tracker_, projection.displacement);
+        if (projection.error < kSettled && (round == 0 || round >= kEven)) break;
+        if (round < kEven) mesh::staged_move(*tracker_, mesh::tangential_smoothing(mesh()));
+        mesh::staged_move(*tracker_, mesh::volume_projection(mesh()).displacement);
         edit_mesh([&] { tracker_->remesh(); });
     }
     events_.clear();
@@ -156,6 +160,7 @@ sim::StepReport VortexSheetSolver::advance(double time_limit) {
     if (verlet && !implicit) kick(0.5 * dt);
     inflate();
     if (options_.remeshing) edit_mesh([&] { tracker_->remesh(); });
+    else check_triangles();
     restore_volumes();
     keep_impulse();
     apply_events();
@@ -166,6 +171,18 @@ sim::StepReport VortexSheetSolver::advance(double time_limit) {
     if (implicit)
         return {.step = dt, .evaluations = evaluations_, .iterations = evaluations_ - 1, .residual = implicit->residual};
     return {.step = dt, .evaluations = 1, .residual = wire_residual_};
+}
+
+/// Triangles that collapse cannot move any more: films hang on them, and what tension asks for turns into circulation
+/// without end.
+/// @throws NumericalError  fixed triangles cannot follow the films
+void VortexSheetSolver::check_triangles() const {
+    constexpr double kSharpest = 1.0;  // degrees
+    const double degrees = mesh::min_angle(mesh()) * 180.0 / std::numbers::pi;
+    if (degrees < kSharpest)
+        throw NumericalError(fmt::format("t = {:.6g} s, step {}: a triangle has an angle of {:.2g} degrees; triangles that "
+                                         "stay as they are cannot follow these films: set vortex_sheet.remeshing = true",
+                                         time_, steps_, degrees));
 }
 
 double VortexSheetSolver::choose_step(double time_limit) const {
@@ -336,7 +353,7 @@ void VortexSheetSolver::edit_mesh(Edit&& edit) {
 /// Such jumps are large beside the velocities; those of a swing are about twice the velocities and left as they are.
 void VortexSheetSolver::heal(const std::vector<VertexId>& edited) {
     if (edited.empty() || options_.healing == 0) return;
-    constexpr double kHidden = 6.0;  // jump over mean speed: more than any swing of low order has
+    constexpr double kHidden = 4.0;  // jump over mean speed: more than any swing of low order has
     const double most = kHidden * mean_speed();
     const std::vector<Vec3> strength = face_strengths(mesh(), topology_, phi_);
     const auto hides_flow = [&](VertexId v) {

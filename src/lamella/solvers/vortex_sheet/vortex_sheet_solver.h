@@ -57,6 +57,7 @@ private:
     IdVector<mesh::VertexId, Vec3> velocity_at_midpoint(double dt);
     void obey_wires(const mesh::FoamMesh& mesh, const SheetGeometry& geometry, double from, double to, Flow& flow);
     void move(double dt);
+    void check_triangles() const;
     void restore_volumes();
     void restore_volumes(const IdVector<mesh::RegionId, double>& before, const std::vector<mesh::TopologyEvent>& events);
     void keep_impulse();
