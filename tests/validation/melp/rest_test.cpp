@@ -80,11 +80,11 @@ TEST(Rest, KeepsTheMomentumOfASwingingBubble) {
     advance_to(*solver, 0.05);
     const double drift = momentum(*solver) / (0.05 * kFilmMass * kArea * kWaveSpeed);
     std::printf("momentum drift of a swinging bubble %.1e of m c per second\n", drift);
-    EXPECT_LT(drift, 1e-5);
+    EXPECT_LT(drift, 1e-9);  // the sheet asks for 1e-6; what is left are residuals of the linear solves
 }
 
-/// While uneven liquid pulls itself even, coarse particles slip through it; what that costs is bounded and does not grow.
-TEST(Rest, NearlyKeepsItsMomentumWhileLiquidFlows) {
+/// While uneven liquid pulls itself even, coarse particles slip through it.
+TEST(Rest, KeepsItsMomentumWhileLiquidFlows) {
     auto solver = bubble(1200, "start.thickness_noise = 0.8\nsteps_per_period = 0.0\nlargest_step = 0.005");
     const double scale = kFilmMass * kArea * kWaveSpeed;
     advance_to(*solver, 0.05);
@@ -92,8 +92,8 @@ TEST(Rest, NearlyKeepsItsMomentumWhileLiquidFlows) {
     advance_to(*solver, 0.3);
     const double late = momentum(*solver) / scale;
     std::printf("momentum while liquid evens out: %.1e, then %.1e of m c\n", early, late);
-    EXPECT_LT(early, 3e-5);
-    EXPECT_LT(late, 3e-5);
+    EXPECT_LT(early, 1e-9);
+    EXPECT_LT(late, 1e-9);
 }
 
 TEST(Rest, FliesOnAtItsSpeed) {
@@ -104,7 +104,7 @@ TEST(Rest, FliesOnAtItsSpeed) {
         const double before = scalar(*solver, "momentum_x");
         advance_to(*solver, 0.02);
         std::printf("fine_ratio %s: momentum %+.1e relative\n", ratio, scalar(*solver, "momentum_x") / before - 1.0);
-        EXPECT_NEAR(scalar(*solver, "momentum_x") / before, 1.0, 1e-6);
+        EXPECT_NEAR(scalar(*solver, "momentum_x") / before, 1.0, ratio[0] == '0' ? 1e-6 : 1e-9);
         Vec3 center;
         for (const Vec3& x : solver->coarse().position) center += x / static_cast<double>(solver->coarse().size());
         EXPECT_NEAR(center[0], 0.01, 1e-5);
