@@ -118,6 +118,7 @@ TEST(MelpSolver, RefusesFilmsAndOptionsThatItDoesNotKnow) {
     EXPECT_THROW(solver_of(kPair, {"melp.fine_ratio=16"}), InputError);
     EXPECT_THROW(solver_of(kPair, {"resolution.edge_length=0.002"}), InputError);
     EXPECT_THROW(solver_of("[foam]\ncount = 3\n[resolution]\nedge_length = 5e-4\n[melp]\nfine_ratio = 0\n"), InputError);
+    EXPECT_THROW(solver_of(std::string(kPair) + "[[bubble]]\ncenter = [0.0, 0.2, 0.0]\nradius = 0.02\n"), InputError);
     EXPECT_NO_THROW(solver_of(kPair));
     EXPECT_NO_THROW(solver_of(ball));
 }
