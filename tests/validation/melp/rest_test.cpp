@@ -1,9 +1,8 @@
 // Bubbles at rest: Young and Laplace, drainage, equalisation. [method sheet 14: V1, V5, V6, V12]
 
-#include "../../unit/melp/bubbles.h"
-
 #include <gtest/gtest.h>
 
+#include "../../unit/melp/bubbles.h"
 #include <algorithm>
 
 namespace lamella::melp {
@@ -13,26 +12,28 @@ void advance_to(MelpSolver& solver, double time) {
     while (solver.time() < time) solver.advance(time);
 }
 
-const double kFilmMass = 1000.0 * 5e-7;                                  // [kg/m^2]
-const double kWaveSpeed = std::sqrt(2.0 * kTension / kFilmMass);         // of the membrane [m/s]
+const double kFilmMass = 1000.0 * 5e-7;                           // [kg/m^2]
+const double kWaveSpeed = std::sqrt(2.0 * kTension / kFilmMass);  // of the membrane [m/s]
 const double kArea = 4.0 * std::numbers::pi * kRadius * kRadius;
 
 TEST(Rest, HasThePressureOfYoungAndLaplace) {
     auto solver = bubble(2562, "fine_ratio = 0\ntheta = 1.0");
     advance_to(*solver, 0.2);
-    std::printf("pressure %.5f of 2 Pa, area %+.2e, volume %+.2e, speed / c %.1e\n", scalar(*solver, "gauge_pressure_1"),
-                scalar(*solver, "particle_area") / kArea - 1.0,
-                scalar(*solver, "particle_volume") / (kArea * kRadius / 3.0) - 1.0, scalar(*solver, "max_velocity") / kWaveSpeed);
+    std::printf("pressure %.5f of 2 Pa, area %+.2e, volume %+.2e, speed / c %.1e\n",
+                scalar(*solver, "gauge_pressure_1"), scalar(*solver, "particle_area") / kArea - 1.0,
+                scalar(*solver, "particle_volume") / (kArea * kRadius / 3.0) - 1.0,
+                scalar(*solver, "max_velocity") / kWaveSpeed);
     EXPECT_NEAR(scalar(*solver, "gauge_pressure_1") / (4.0 * kTension / kRadius), 1.0, 0.01);
     EXPECT_NEAR(scalar(*solver, "particle_area") / kArea, 1.0, 2e-3);
     EXPECT_NEAR(scalar(*solver, "particle_volume") / (kArea * kRadius / 3.0), 1.0, 2e-3);
     EXPECT_LT(scalar(*solver, "max_velocity") / kWaveSpeed, 1e-4);
 }
 
-/// Gravity pulls the liquid down until the surfactant that goes with it holds it: ln eta falls by rho g eta / (2 R T Gamma)
-/// per height, on a film of any shape; on a sphere the mean thickness is C sinh(k R) / (k R).
+/// Gravity pulls the liquid down until the surfactant that goes with it holds it: ln eta falls by rho g eta / (2 R T
+/// Gamma) per height, on a film of any shape; on a sphere the mean thickness is C sinh(k R) / (k R).
 TEST(Rest, DrainsToAnExponentialFilm) {
-    auto solver = bubble(1200, "floating = true\nair_drag = 1e-3\nsteps_per_period = 0.0\nlargest_step = 0.01", "gravity = [0.0, 0.0, -9.81]\n");
+    auto solver = bubble(1200, "floating = true\nair_drag = 1e-3\nsteps_per_period = 0.0\nlargest_step = 0.01",
+                         "gravity = [0.0, 0.0, -9.81]\n");
     advance_to(*solver, 1.5);
     const Geometry& g = solver->geometry();
     double w = 0.0, z = 0.0, l = 0.0, zz = 0.0, zl = 0.0;
@@ -98,8 +99,10 @@ TEST(Rest, KeepsItsMomentumWhileLiquidFlows) {
 
 TEST(Rest, FliesOnAtItsSpeed) {
     for (const char* ratio : {"0", "16"}) {
-        auto solver = solver_of(std::string("[material]\nthickness = 5e-7\n[[bubble]]\nradius = 0.05\nvelocity = [0.5, 0.0, 0.2]\n"
-                                            "[resolution]\nedge_length = 0.005\n[melp]\nfine_ratio = ") + ratio);
+        auto solver = solver_of(
+            std::string("[material]\nthickness = 5e-7\n[[bubble]]\nradius = 0.05\nvelocity = [0.5, 0.0, 0.2]\n"
+                        "[resolution]\nedge_length = 0.005\n[melp]\nfine_ratio = ") +
+            ratio);
         solver->start({});
         const double before = scalar(*solver, "momentum_x");
         advance_to(*solver, 0.02);

@@ -80,8 +80,8 @@ private:
     double spacing_ = 0.0;
     double time_ = 0.0;
     std::int64_t steps_ = 0;
-    double step_ = 0.0;             ///< the last one
-    double initial_liquid_ = 0.0;   ///< [m^3]
+    double step_ = 0.0;            ///< the last one
+    double initial_liquid_ = 0.0;  ///< [m^3]
 
     // What follows from the above: set by update_shape and update_liquid.
     Geometry geometry_;

@@ -20,25 +20,29 @@ using mesh::RegionId;
 using mesh::RegionKind;
 using mesh::VertexId;
 
-/// Where bubbles meet, films fold within a few spacings. Coarser ones, ones with a flow in their films, and three at a time were
-/// seen to tear there.
+/// Where bubbles meet, films fold within a few spacings. Coarser ones, ones with a flow in their films, and three at a
+/// time were seen to tear there.
 void refuse_coarse_contacts(const film::Problem& films, const Options& options) {
     const auto& regions = films.mesh.regions;
-    const auto bubbles = std::count_if(regions.begin(), regions.end(),
-                                       [](const auto& r) { return r.kind == RegionKind::kClosed; });
+    const auto bubbles =
+        std::count_if(regions.begin(), regions.end(), [](const auto& r) { return r.kind == RegionKind::kClosed; });
     if (bubbles < 2) return;
     if (bubbles > 2)
-        throw InputError(fmt::format("melp: {} bubbles: more than two are not built yet; use solver vortex_sheet or equilibrium",
-                                     bubbles));
+        throw InputError(fmt::format(
+            "melp: {} bubbles: more than two are not built yet; use solver vortex_sheet or equilibrium", bubbles));
     if (options.fine_ratio > 0)
-        throw InputError(fmt::format("melp.fine_ratio = {}: several bubbles with a flow in their films are not built yet; "
-                                     "fine_ratio = 0 moves them without one", options.fine_ratio));
+        throw InputError(
+            fmt::format("melp.fine_ratio = {}: several bubbles with a flow in their films are not built yet; "
+                        "fine_ratio = 0 moves them without one",
+                        options.fine_ratio));
     constexpr double kFinest = 10.0;
     for (const RegionId r : regions.ids()) {
         const double radius = std::cbrt(0.75 * regions[r].target_volume / std::numbers::pi);
         if (regions[r].kind == RegionKind::kClosed && films.edge_length > 1.001 * radius / kFinest)
-            throw InputError(fmt::format("resolution.edge_length = {:.4g} m is too coarse for bubble {} among others: at most a "
-                                         "tenth of its radius of {:.4g} m will do", films.edge_length, index(r), radius));
+            throw InputError(
+                fmt::format("resolution.edge_length = {:.4g} m is too coarse for bubble {} among others: at most a "
+                            "tenth of its radius of {:.4g} m will do",
+                            films.edge_length, index(r), radius));
     }
 }
 
@@ -49,9 +53,10 @@ void refuse_wrong_volumes(const film::Problem& films) {
     for (const RegionId r : films.mesh.regions.ids()) {
         const mesh::Region& region = films.mesh.regions[r];
         if (region.kind == RegionKind::kClosed && std::abs(volume[r] / region.target_volume - 1.0) > kFarthest)
-            throw InputError(fmt::format("melp: bubble {} would start with {:.3g} times its volume, as bubbles that overlap at the "
-                                         "start do; put them a hundredth of a radius apart, they join by themselves",
-                                         index(r), volume[r] / region.target_volume));
+            throw InputError(
+                fmt::format("melp: bubble {} would start with {:.3g} times its volume, as bubbles that overlap at the "
+                            "start do; put them a hundredth of a radius apart, they join by themselves",
+                            index(r), volume[r] / region.target_volume));
     }
 }
 
@@ -92,7 +97,8 @@ struct Ball {
 std::optional<Ball> ball_of(const RegionSurface& surface) {
     Ball ball;
     for (const Vec3& x : surface.vertex) ball.center += x / static_cast<double>(surface.vertex.size());
-    for (const Vec3& x : surface.vertex) ball.radius += norm(x - ball.center) / static_cast<double>(surface.vertex.size());
+    for (const Vec3& x : surface.vertex)
+        ball.radius += norm(x - ball.center) / static_cast<double>(surface.vertex.size());
     constexpr double kRound = 1e-6;
     for (const Vec3& x : surface.vertex)
         if (std::abs(norm(x - ball.center) - ball.radius) > kRound * ball.radius) return std::nullopt;
@@ -167,7 +173,8 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
         if (mesh.on_wire[v] != 0) throw InputError("melp: films on wires are not built yet; use solver vortex_sheet");
     if (!films.wires.empty()) throw InputError("melp: [[wire]] is not built yet; use solver vortex_sheet");
     if (!films.tensions.empty()) throw InputError("melp: [[tension]] is not built yet; use solver equilibrium");
-    if (!films.events.empty()) throw InputError("melp: [[event]] is not built yet; use solver vortex_sheet or equilibrium");
+    if (!films.events.empty())
+        throw InputError("melp: [[event]] is not built yet; use solver vortex_sheet or equilibrium");
     refuse_coarse_contacts(films, options);
     refuse_wrong_volumes(films);
 }
@@ -193,10 +200,11 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
     for (const RegionId r : films.mesh.regions.ids())
         if (films.mesh.regions[r].kind == RegionKind::kClosed)
             largest_radius = std::max(largest_radius, std::cbrt(0.75 * volume[r] / std::numbers::pi));
-    const film::Noise noise{.amplitude = options.start.thickness_noise,
-                            .wave_length = options.start.noise_length > 0.0 ? options.start.noise_length : 1.4 * largest_radius,
-                            .octaves = options.start.noise_octaves,
-                            .seed = seed};
+    const film::Noise noise{
+        .amplitude = options.start.thickness_noise,
+        .wave_length = options.start.noise_length > 0.0 ? options.start.noise_length : 1.4 * largest_radius,
+        .octaves = options.start.noise_octaves,
+        .seed = seed};
     for (const RegionId r : films.mesh.regions.ids()) {
         if (films.mesh.regions[r].kind != RegionKind::kClosed) continue;
         const RegionSurface surface = surface_of(films.mesh, r);
@@ -245,7 +253,9 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
     return start;
 }
 
-std::vector<double> particle_volumes(const CoarseParticles& coarse, const Geometry& geometry, const std::vector<Gas>& gas) {
+std::vector<double> particle_volumes(const CoarseParticles& coarse,
+                                     const Geometry& geometry,
+                                     const std::vector<Gas>& gas) {
     std::vector<Vec3> center(gas.size());
     std::vector<double> area(gas.size(), 0.0), volume(gas.size(), 0.0);
     for (std::size_t i = 0; i < coarse.size(); ++i) {
