@@ -10,7 +10,8 @@ namespace lamella::linalg {
 ///
 /// @param a  N x N, row by row; only its lower triangle is read, and overwritten by L
 /// @param b  right side, and the answer
-/// @returns  false where A is not safely positive definite: a pivot below `cutoff` times its diagonal entry. Then `b` is
+/// @returns  false where A is not safely positive definite: a pivot below `cutoff` times its diagonal entry. Then `b`
+/// is
 ///           no answer.
 template <std::size_t N>
 bool solve_positive(std::array<double, N * N>& a, std::array<double, N>& b, double cutoff = 1e-10) {

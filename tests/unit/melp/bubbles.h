@@ -13,15 +13,16 @@
 
 namespace lamella::melp {
 
-inline constexpr double kRadius = 0.05;   // [m]
-inline constexpr double kTension = 0.025; // of one interface [N/m]
+inline constexpr double kRadius = 0.05;    // [m]
+inline constexpr double kTension = 0.025;  // of one interface [N/m]
 
 /// Edge that gives so many coarse particles on a sphere of radius kRadius.
 inline double edge_for(double coarse_particles) {
     return kRadius * std::sqrt(4.0 * std::numbers::pi / coarse_particles);
 }
 
-inline std::unique_ptr<MelpSolver> solver_of(const std::string& tables, const std::vector<std::string>& overrides = {}) {
+inline std::unique_ptr<MelpSolver> solver_of(const std::string& tables,
+                                             const std::vector<std::string>& overrides = {}) {
     const auto registry = scene::all_solvers();
     const auto scene = scene::parse_scene("solver = \"melp\"\n" + tables, "test.toml", overrides, registry);
     auto solver = scene::create_solver(scene, registry);
@@ -30,9 +31,11 @@ inline std::unique_ptr<MelpSolver> solver_of(const std::string& tables, const st
 
 /// One bubble of radius kRadius, tension kTension and 500 nm of a liquid of 1000 kg/m^3, started.
 /// @param options  lines of [melp]
-inline std::unique_ptr<MelpSolver> bubble(double coarse_particles, const std::string& options, const std::string& material = "") {
-    auto solver = solver_of("[material]\nsurface_tension = " + std::to_string(kTension) + "\nthickness = 5e-7\n" + material +
-                            "\n[[bubble]]\nradius = " + std::to_string(kRadius) +
+inline std::unique_ptr<MelpSolver> bubble(double coarse_particles,
+                                          const std::string& options,
+                                          const std::string& material = "") {
+    auto solver = solver_of("[material]\nsurface_tension = " + std::to_string(kTension) + "\nthickness = 5e-7\n" +
+                            material + "\n[[bubble]]\nradius = " + std::to_string(kRadius) +
                             "\n[resolution]\nedge_length = " + std::to_string(edge_for(coarse_particles)) +
                             "\n[melp]\nliquid_density = 1000.0\n" + options);
     solver->start({});
@@ -55,8 +58,8 @@ inline double legendre(int l, double c) {
     return l == 0 ? 1.0 : now;
 }
 
-/// Amplitude of a mode of the shape about the center of area: (2 l + 1) / (4 pi) times the integral of r P_l(x / r) over
-/// the solid angle [m].
+/// Amplitude of a mode of the shape about the center of area: (2 l + 1) / (4 pi) times the integral of r P_l(x / r)
+/// over the solid angle [m].
 inline double shape_mode(const MelpSolver& solver, int l) {
     const auto& x = solver.coarse().position;
     Vec3 center;

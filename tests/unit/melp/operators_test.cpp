@@ -19,7 +19,8 @@ CoarseParticles sphere(std::size_t count, double radius, double jitter = 0.0) {
     std::vector<Vec3> points = fibonacci_sphere(count);
     for (std::size_t i = 0; i < count; ++i) {
         Vec3& n = points[i];
-        n += (jitter * spacing) * (2.0 * uniform_vector<3>(random_bits(1, RandomStream::kMeshJitter, 0, i)) - Vec3{{1, 1, 1}});
+        n += (jitter * spacing) *
+             (2.0 * uniform_vector<3>(random_bits(1, RandomStream::kMeshJitter, 0, i)) - Vec3{{1, 1, 1}});
         n = n / norm(n);
         coarse.position.push_back(radius * n);
     }
@@ -72,7 +73,8 @@ TEST(FilmKernel, HasItsSlopeAsTheLaplaciansWeight) {
     const FilmKernel kernel{0.7};
     for (const double q : {0.01, 0.1, 0.3, 0.34, 0.5, 0.66, 0.7, 0.9, 0.99}) {
         const double d = 0.7 * q, step = 1e-5 * d;
-        const double slope = (kernel.value((d + step) * (d + step)) - kernel.value((d - step) * (d - step))) / (2.0 * step);
+        const double slope =
+            (kernel.value((d + step) * (d + step)) - kernel.value((d - step) * (d - step))) / (2.0 * step);
         EXPECT_NEAR(kernel.laplacian_weight(d * d), -2.0 * slope / d, 2e-5 * kernel.laplacian_weight(0.0)) << q;
     }
     EXPECT_EQ(kernel.value(0.72 * 0.72), 0.0);
@@ -99,9 +101,9 @@ TEST(Operators, HaveTheErrorsOfTheTableOnEvenLayouts) {
         square += error * error / 2562.0;
         worst = std::max(worst, std::abs(error));
     }
-    EXPECT_NEAR(mean, 0.0, 4e-4);              // table: +0.02 %
-    EXPECT_LT(std::sqrt(square), 1.5e-3);      // table: 0.07 %
-    EXPECT_LT(worst, 1e-2);                    // table: 0.7 %
+    EXPECT_NEAR(mean, 0.0, 4e-4);          // table: +0.02 %
+    EXPECT_LT(std::sqrt(square), 1.5e-3);  // table: 0.07 %
+    EXPECT_LT(worst, 1e-2);                // table: 0.7 %
     const std::vector<Gas> gas{{.volume = 1.0}};
     EXPECT_NEAR(particle_volumes(coarse, g, gas)[0] / (exact * kR / 3.0), 1.0, 1e-4);  // table: -0.007 %
 }
@@ -109,7 +111,8 @@ TEST(Operators, HaveTheErrorsOfTheTableOnEvenLayouts) {
 TEST(Operators, LoseAccuracyToDisorderAsTheTableSays) {
     constexpr double kR = 0.05;
     const double exact = 4.0 * std::numbers::pi * kR * kR;
-    // A jitter uniform in a cube of +-j has, along the film, the variance of the table's within a factor: the rows bound it.
+    // A jitter uniform in a cube of +-j has, along the film, the variance of the table's within a factor: the rows
+    // bound it.
     const Geometry g = geometry(sphere(2562, kR, 0.3), kR, 4.0);
     const double error = total(g.area) / exact - 1.0;
     EXPECT_LT(error, -0.005);

@@ -1,14 +1,13 @@
-#include "lamella/solvers/melp/melp_solver.h"
-
-#include "../sim/state_memory.h"
-#include "bubbles.h"
-
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/melp_solver.h"
 #include "lamella/solvers/melp/start.h"
 #include "lamella/solvers/melp/surface.h"
 
 #include <gtest/gtest.h>
+
+#include "../sim/state_memory.h"
+#include "bubbles.h"
 
 namespace lamella::melp {
 namespace {
@@ -117,6 +116,9 @@ TEST(MelpSolver, RefusesFilmsAndOptionsThatItDoesNotKnow) {
     EXPECT_THROW(solver_of(ball + "[melp]\nfine_ratio = -1\n"), InputError);
     EXPECT_THROW(solver_of(kPair, {"melp.fine_ratio=16"}), InputError);
     EXPECT_THROW(solver_of(kPair, {"resolution.edge_length=0.002"}), InputError);
+    EXPECT_THROW(solver_of("[foam]\ncount = 3\n[resolution]\nedge_length = 5e-4\n[melp]\nfine_ratio = 0\n"),
+                 InputError);
+    EXPECT_THROW(solver_of(std::string(kPair) + "[[bubble]]\ncenter = [0.0, 0.2, 0.0]\nradius = 0.02\n"), InputError);
     EXPECT_NO_THROW(solver_of(kPair));
     EXPECT_NO_THROW(solver_of(ball));
 }

@@ -1,9 +1,8 @@
 #include "lamella/solvers/melp/transfer.h"
 
-#include "bubbles.h"
-
 #include <gtest/gtest.h>
 
+#include "bubbles.h"
 #include <numeric>
 
 namespace lamella::melp {
@@ -94,8 +93,8 @@ TEST(Transfer, KeepsTheAngularMomentumOfAFlatFilmThatTurns) {
         sent += gathered.liquid_volume[e] * cross(coarse.position[e] - center, velocity[e])[2];
         back += cross(coarse.position[e] - center, gathered.momentum[e])[2];
     }
-    // The floor of the moments takes 1e-4 r^2 / (spread of the kernel, about r^2 / 20), 0.2 %, of the affine part, which is
-    // itself the kernel's spread over that of the film, 1 %, of the whole.
+    // The floor of the moments takes 1e-4 r^2 / (spread of the kernel, about r^2 / 20), 0.2 %, of the affine part,
+    // which is itself the kernel's spread over that of the film, 1 %, of the whole.
     EXPECT_NEAR(back / sent, 1.0, 5e-5);
 }
 

@@ -1,10 +1,10 @@
 // Two bubbles that have just touched settle into the standard double bubble. [method sheet 14: V2, V4]
 
-#include "../../unit/melp/bubbles.h"
-
 #include "lamella/linalg/dense.h"
 
 #include <gtest/gtest.h>
+
+#include "../../unit/melp/bubbles.h"
 
 namespace lamella::melp {
 namespace {

@@ -1,9 +1,9 @@
 // Waves of thickness along the film: surfactant that is carried together pushes itself apart. [method sheet 14: V10]
 
+#include <gtest/gtest.h>
+
 #include "../../unit/melp/bubbles.h"
 #include "../../unit/sim/state_memory.h"
-
-#include <gtest/gtest.h>
 
 namespace lamella::melp {
 namespace {

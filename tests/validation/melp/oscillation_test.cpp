@@ -1,22 +1,24 @@
 // Bubbles that swing, against reference/reference.json, oscillation/{film_only, with_air}/eta=5e-07.
 
-#include "../../unit/melp/bubbles.h"
-
 #include <gtest/gtest.h>
+
+#include "../../unit/melp/bubbles.h"
 
 namespace lamella::melp {
 namespace {
 
 /// rad/s, from two swings of a bubble that starts with 1 % of the mode.
 double frequency(double particles, int mode, const std::string& options) {
-    auto solver = bubble(particles, "start.mode = " + std::to_string(mode) + "\nstart.mode_amplitude = 0.01\n" + options,
-                         "air_density = 1.2\n");
+    auto solver =
+        bubble(particles, "start.mode = " + std::to_string(mode) + "\nstart.mode_amplitude = 0.01\n" + options,
+               "air_density = 1.2\n");
     return 2.0 * std::numbers::pi / period(*solver, 4, [&] { return shape_mode(*solver, mode); });
 }
 
 constexpr double kFilmOnly[] = {400.0, 632.4555320336758, 848.5281374238571};  // l = 2, 3, 4
 
-// Measured, over the closed form, for l = 2, 3, 4 and 1200 particles with 100 steps per swing in mode 2: see docs/melp.md.
+// Measured, over the closed form, for l = 2, 3, 4 and 1200 particles with 100 steps per swing in mode 2: see
+// docs/melp.md.
 TEST(Oscillation, HasTheFrequenciesOfABubbleWhoseFilmAloneHasMass) {
     for (const int mode : {2, 3}) {
         const double ratio = frequency(1200, mode, "fine_ratio = 0\nsteps_per_period = 100.0") / kFilmOnly[mode - 2];
@@ -33,8 +35,10 @@ TEST(Oscillation, IsTheSameWithTheLiquidOnFineParticles) {
 }
 
 TEST(Oscillation, IsSlowerByTheAirThatSwingsAlong) {
-    const double exact = std::sqrt(2.0 * kTension * 4.0 / (kRadius * kRadius * (1000.0 * 5e-7 + 1.2 * kRadius * 5.0 / 6.0)));
-    const double ratio = frequency(1200, 2, "fine_ratio = 0\nair_mass = 0.8333333333\nsteps_per_period = 100.0") / exact;
+    const double exact =
+        std::sqrt(2.0 * kTension * 4.0 / (kRadius * kRadius * (1000.0 * 5e-7 + 1.2 * kRadius * 5.0 / 6.0)));
+    const double ratio =
+        frequency(1200, 2, "fine_ratio = 0\nair_mass = 0.8333333333\nsteps_per_period = 100.0") / exact;
     std::printf("with air, l = 2: %.4f of %.4f\n", ratio, exact);
     EXPECT_NEAR(ratio, 1.0, 0.02);
 }

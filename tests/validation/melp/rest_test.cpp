@@ -1,9 +1,8 @@
 // Bubbles at rest: Young and Laplace, drainage, equalisation. [method sheet 14: V1, V5, V6, V12]
 
-#include "../../unit/melp/bubbles.h"
-
 #include <gtest/gtest.h>
 
+#include "../../unit/melp/bubbles.h"
 #include <algorithm>
 
 namespace lamella::melp {
@@ -13,26 +12,28 @@ void advance_to(MelpSolver& solver, double time) {
     while (solver.time() < time) solver.advance(time);
 }
 
-const double kFilmMass = 1000.0 * 5e-7;                                  // [kg/m^2]
-const double kWaveSpeed = std::sqrt(2.0 * kTension / kFilmMass);         // of the membrane [m/s]
+const double kFilmMass = 1000.0 * 5e-7;                           // [kg/m^2]
+const double kWaveSpeed = std::sqrt(2.0 * kTension / kFilmMass);  // of the membrane [m/s]
 const double kArea = 4.0 * std::numbers::pi * kRadius * kRadius;
 
 TEST(Rest, HasThePressureOfYoungAndLaplace) {
     auto solver = bubble(2562, "fine_ratio = 0\ntheta = 1.0");
     advance_to(*solver, 0.2);
-    std::printf("pressure %.5f of 2 Pa, area %+.2e, volume %+.2e, speed / c %.1e\n", scalar(*solver, "gauge_pressure_1"),
-                scalar(*solver, "particle_area") / kArea - 1.0,
-                scalar(*solver, "particle_volume") / (kArea * kRadius / 3.0) - 1.0, scalar(*solver, "max_velocity") / kWaveSpeed);
+    std::printf("pressure %.5f of 2 Pa, area %+.2e, volume %+.2e, speed / c %.1e\n",
+                scalar(*solver, "gauge_pressure_1"), scalar(*solver, "particle_area") / kArea - 1.0,
+                scalar(*solver, "particle_volume") / (kArea * kRadius / 3.0) - 1.0,
+                scalar(*solver, "max_velocity") / kWaveSpeed);
     EXPECT_NEAR(scalar(*solver, "gauge_pressure_1") / (4.0 * kTension / kRadius), 1.0, 0.01);
     EXPECT_NEAR(scalar(*solver, "particle_area") / kArea, 1.0, 2e-3);
     EXPECT_NEAR(scalar(*solver, "particle_volume") / (kArea * kRadius / 3.0), 1.0, 2e-3);
     EXPECT_LT(scalar(*solver, "max_velocity") / kWaveSpeed, 1e-4);
 }
 
-/// Gravity pulls the liquid down until the surfactant that goes with it holds it: ln eta falls by rho g eta / (2 R T Gamma)
-/// per height, on a film of any shape; on a sphere the mean thickness is C sinh(k R) / (k R).
+/// Gravity pulls the liquid down until the surfactant that goes with it holds it: ln eta falls by rho g eta / (2 R T
+/// Gamma) per height, on a film of any shape; on a sphere the mean thickness is C sinh(k R) / (k R).
 TEST(Rest, DrainsToAnExponentialFilm) {
-    auto solver = bubble(1200, "floating = true\nair_drag = 1e-3\nsteps_per_period = 0.0\nlargest_step = 0.01", "gravity = [0.0, 0.0, -9.81]\n");
+    auto solver = bubble(1200, "floating = true\nair_drag = 1e-3\nsteps_per_period = 0.0\nlargest_step = 0.01",
+                         "gravity = [0.0, 0.0, -9.81]\n");
     advance_to(*solver, 1.5);
     const Geometry& g = solver->geometry();
     double w = 0.0, z = 0.0, l = 0.0, zz = 0.0, zl = 0.0;
@@ -80,11 +81,11 @@ TEST(Rest, KeepsTheMomentumOfASwingingBubble) {
     advance_to(*solver, 0.05);
     const double drift = momentum(*solver) / (0.05 * kFilmMass * kArea * kWaveSpeed);
     std::printf("momentum drift of a swinging bubble %.1e of m c per second\n", drift);
-    EXPECT_LT(drift, 1e-5);
+    EXPECT_LT(drift, 1e-9);  // the sheet asks for 1e-6; what is left are residuals of the linear solves
 }
 
-/// While uneven liquid pulls itself even, coarse particles slip through it; what that costs is bounded and does not grow.
-TEST(Rest, NearlyKeepsItsMomentumWhileLiquidFlows) {
+/// While uneven liquid pulls itself even, coarse particles slip through it.
+TEST(Rest, KeepsItsMomentumWhileLiquidFlows) {
     auto solver = bubble(1200, "start.thickness_noise = 0.8\nsteps_per_period = 0.0\nlargest_step = 0.005");
     const double scale = kFilmMass * kArea * kWaveSpeed;
     advance_to(*solver, 0.05);
@@ -92,19 +93,21 @@ TEST(Rest, NearlyKeepsItsMomentumWhileLiquidFlows) {
     advance_to(*solver, 0.3);
     const double late = momentum(*solver) / scale;
     std::printf("momentum while liquid evens out: %.1e, then %.1e of m c\n", early, late);
-    EXPECT_LT(early, 3e-5);
-    EXPECT_LT(late, 3e-5);
+    EXPECT_LT(early, 1e-9);
+    EXPECT_LT(late, 1e-9);
 }
 
 TEST(Rest, FliesOnAtItsSpeed) {
     for (const char* ratio : {"0", "16"}) {
-        auto solver = solver_of(std::string("[material]\nthickness = 5e-7\n[[bubble]]\nradius = 0.05\nvelocity = [0.5, 0.0, 0.2]\n"
-                                            "[resolution]\nedge_length = 0.005\n[melp]\nfine_ratio = ") + ratio);
+        auto solver = solver_of(
+            std::string("[material]\nthickness = 5e-7\n[[bubble]]\nradius = 0.05\nvelocity = [0.5, 0.0, 0.2]\n"
+                        "[resolution]\nedge_length = 0.005\n[melp]\nfine_ratio = ") +
+            ratio);
         solver->start({});
         const double before = scalar(*solver, "momentum_x");
         advance_to(*solver, 0.02);
         std::printf("fine_ratio %s: momentum %+.1e relative\n", ratio, scalar(*solver, "momentum_x") / before - 1.0);
-        EXPECT_NEAR(scalar(*solver, "momentum_x") / before, 1.0, 1e-6);
+        EXPECT_NEAR(scalar(*solver, "momentum_x") / before, 1.0, ratio[0] == '0' ? 1e-6 : 1e-9);
         Vec3 center;
         for (const Vec3& x : solver->coarse().position) center += x / static_cast<double>(solver->coarse().size());
         EXPECT_NEAR(center[0], 0.01, 1e-5);

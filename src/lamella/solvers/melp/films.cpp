@@ -14,7 +14,8 @@ constexpr double kThinnest = 0.05;
 
 std::vector<double> region_areas(const Geometry& geometry, const CoarseParticles& coarse, std::size_t regions) {
     std::vector<double> area(regions, 0.0);
-    for (std::size_t e = 0; e < coarse.size(); ++e) area[static_cast<std::size_t>(coarse.region[e])] += geometry.area[e];
+    for (std::size_t e = 0; e < coarse.size(); ++e)
+        area[static_cast<std::size_t>(coarse.region[e])] += geometry.area[e];
     return area;
 }
 
@@ -47,7 +48,8 @@ Films films_of(const Geometry& geometry,
     const std::size_t count = coarse.size();
     const std::vector<double> area = region_areas(geometry, coarse, even.size());
     std::vector<double> liquid(even.size(), 0.0);
-    for (std::size_t e = 0; e < count; ++e) liquid[static_cast<std::size_t>(coarse.region[e])] += gathered.liquid_volume[e];
+    for (std::size_t e = 0; e < count; ++e)
+        liquid[static_cast<std::size_t>(coarse.region[e])] += gathered.liquid_volume[e];
     const std::vector<Vec3> drift = region_drifts(geometry, coarse, even.size());
     Films films;
     films.liquid_volume.resize(count);
@@ -69,8 +71,10 @@ Films films_of(const Geometry& geometry,
         films.tension[e] = law.tension(films.concentration[e]);
         films.seen_thickness[e] = volume > 0.0 && !evenly ? gathered.seen_volume[e] / volume : films.thickness[e];
         Vec3 u;
-        if (evenly) u = drift[r];
-        else if (volume > 0.0) u = gathered.momentum[e] / volume;
+        if (evenly)
+            u = drift[r];
+        else if (volume > 0.0)
+            u = gathered.momentum[e] / volume;
         films.along[e] = u - dot(u, geometry.normal[e]) * geometry.normal[e];
     }
     return films;

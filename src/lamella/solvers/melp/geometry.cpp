@@ -67,7 +67,8 @@ Tensor gradient_map(std::span<const Vec3> position,
         uv += w * u * v;
         vv += w * v * v;
     }
-    // In the middle of a film this is the unit matrix. Neighbors on a line leave one direction unseen: no gradient then.
+    // In the middle of a film this is the unit matrix. Neighbors on a line leave one direction unseen: no gradient
+    // then.
     constexpr double kUnseen = 1e-3;
     const double determinant = uu * vv - uv * uv;
     if (!(determinant > kUnseen * (uu + vv) * (uu + vv))) return {};

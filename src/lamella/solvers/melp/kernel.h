@@ -1,9 +1,9 @@
 #pragma once
 
+#include "lamella/core/host_device.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "lamella/core/host_device.h"
 
 namespace lamella::melp {
 

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
+#include "lamella/linalg/small_cholesky.h"
 #include "lamella/solvers/melp/operators.h"
 #include "lamella/solvers/melp/redistribution.h"
 #include "lamella/solvers/melp/start.h"
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -23,10 +25,11 @@ MelpSolver::MelpSolver(const Options& options, const sim::SolverInput& input) : 
             .reference_concentration = options_.surfactant_concentration,
             .temperature = options_.temperature};
     if (law_.tension(2.0 * options_.surfactant_concentration) <= 0.0)
-        throw InputError(fmt::format("melp.surfactant_concentration = {:.3g} mol/m^2 takes R T * that = {:.3g} N/m from the tension, "
-                                     "as much as material.surface_tension = {:.3g} N/m has",
-                                     options_.surfactant_concentration,
-                                     law_.thermal_energy() * options_.surfactant_concentration, law_.reference_tension));
+        throw InputError(fmt::format(
+            "melp.surfactant_concentration = {:.3g} mol/m^2 takes R T * that = {:.3g} N/m from the tension, "
+            "as much as material.surface_tension = {:.3g} N/m has",
+            options_.surfactant_concentration, law_.thermal_energy() * options_.surfactant_concentration,
+            law_.reference_tension));
     refuse_unknown_films(*input_.films, options_);
 }
 
@@ -56,7 +59,8 @@ void MelpSolver::even_out_layout() {
     constexpr int kMostPasses = 60;
     for (int pass = 0; pass < kMostPasses && density_spread(geometry_, coarse_, gas_.size()) > kEven; ++pass) {
         const std::vector<Vec3> shift = evening_shift(geometry_, coarse_, gas_.size(), spacing_);
-        for (std::size_t i = 0; i < coarse_.size(); ++i) coarse_.position[i] += along_patch(geometry_.patch[i], shift[i]);
+        for (std::size_t i = 0; i < coarse_.size(); ++i)
+            coarse_.position[i] += along_patch(geometry_.patch[i], shift[i]);
         update_shape();
     }
 }
@@ -67,18 +71,21 @@ sim::StepReport MelpSolver::advance(double time_limit) {
     const std::vector<Gas> gas_before = gas_;
     const SurfactantStep surfactant = push_along_film(dt);
     const NormalStep normal = push_along_normals(dt);
-    filter_short_waves();
     if (const std::string fault = fault_of_step(); !fault.empty()) {
         coarse_.velocity = velocity_before;
         gas_ = gas_before;
-        throw NumericalError(fmt::format("melp: step {} of {:.3g} s from time {:.6g} s: {}; a smaller melp.cfl or theta = 1 may help",
-                                         steps_ + 1, dt, time_, fault));
+        throw NumericalError(
+            fmt::format("melp: step {} of {:.3g} s from time {:.6g} s: {}; a smaller melp.cfl or theta = 1 may help",
+                        steps_ + 1, dt, time_, fault));
     }
+    const std::vector<Vec3> momentum = region_momenta(coarse_.velocity);
+    filter_short_waves();
     give_to_fine(dt);
     move_coarse(dt, normal);
     update_shape();
     move_fine(dt);
     update_liquid();
+    give_back(momentum);
     follow_particle_volumes(dt);
     time_ = dt >= time_limit - time_ ? time_limit : time_ + dt;
     step_ = dt;
@@ -142,7 +149,8 @@ SurfactantStep MelpSolver::push_along_film(double dt) {
 std::vector<double> MelpSolver::masses() const {
     std::vector<double> mass(coarse_.size());
     for (std::size_t i = 0; i < mass.size(); ++i) {
-        const double radius = std::cbrt(0.75 * gas_[static_cast<std::size_t>(coarse_.region[i])].volume / std::numbers::pi);
+        const double radius =
+            std::cbrt(0.75 * gas_[static_cast<std::size_t>(coarse_.region[i])].volume / std::numbers::pi);
         mass[i] = options_.liquid_density * films_.liquid_volume[i] +
                   options_.air_mass * input_.films->material.air_density * radius * geometry_.area[i];
     }
@@ -177,14 +185,13 @@ NormalStep MelpSolver::push_along_normals(double dt) {
                                           .theta = theta_of(dt),
                                           .dt = dt,
                                           .tolerance = options_.solver_tolerance});
-    for (std::size_t i = 0; i < count; ++i)
-        coarse_.velocity[i] += (step.velocity[i] - before[i]) * geometry_.normal[i];
+    for (std::size_t i = 0; i < count; ++i) coarse_.velocity[i] += (step.velocity[i] - before[i]) * geometry_.normal[i];
     for (std::size_t r = 0; r < gas_.size(); ++r) gas_[r].volume += step.swept[r];
     return step;
 }
 
-/// Waves as short as the spacing are not resolved, and with theta = 1/2 nothing damps them. What two passes leave of the
-/// velocity is made of these: a uniform velocity leaves nothing, a swing in mode 2 the square of a hundredth.
+/// Waves as short as the spacing are not resolved, and with theta = 1/2 nothing damps them. What two passes leave of
+/// the velocity is made of these: a uniform velocity leaves nothing, a swing in mode 2 the square of a hundredth.
 void MelpSolver::filter_short_waves() {
     if (options_.grid_filter == 0.0) return;
     const std::vector<Vec3> rough = roughness(geometry_, roughness(geometry_, coarse_.velocity));
@@ -194,9 +201,9 @@ void MelpSolver::filter_short_waves() {
     }
 }
 
-/// Swings that steps of this length do not resolve would ring from step to step with theta = 1/2: they are damped. So is
-/// everything while bubbles touch: forces at a junction are not those of the matrix to second order, and theta = 1/2 blew
-/// two bubbles up that met without damping.
+/// Swings that steps of this length do not resolve would ring from step to step with theta = 1/2: they are damped. So
+/// is everything while bubbles touch: forces at a junction are not those of the matrix to second order, and theta = 1/2
+/// blew two bubbles up that met without damping.
 double MelpSolver::theta_of(double dt) const {
     constexpr double kResolved = 10.0;  // steps per period
     const bool apart = geometry_.neighbors.other.index.empty();
@@ -208,26 +215,56 @@ void MelpSolver::give_to_fine(double dt) {
                        -std::expm1(-options_.thickness_rate * dt), fine_);
 }
 
+/// Momentum of each region's film that moves with these velocities, per density [m^4/s].
+std::vector<Vec3> MelpSolver::region_momenta(std::span<const Vec3> velocity) const {
+    std::vector<Vec3> momentum(gas_.size());
+    for (std::size_t i = 0; i < coarse_.size(); ++i)
+        momentum[static_cast<std::size_t>(coarse_.region[i])] += films_.liquid_volume[i] * velocity[i];
+    return momentum;
+}
+
 /// Mean velocity of each region's film, by mass.
 std::vector<Vec3> MelpSolver::region_velocities() const {
-    std::vector<Vec3> velocity(gas_.size());
+    std::vector<Vec3> velocity = region_momenta(coarse_.velocity);
     std::vector<double> volume(gas_.size(), 0.0);
-    for (std::size_t i = 0; i < coarse_.size(); ++i) {
-        const auto r = static_cast<std::size_t>(coarse_.region[i]);
-        velocity[r] += films_.liquid_volume[i] * coarse_.velocity[i];
-        volume[r] += films_.liquid_volume[i];
-    }
+    for (std::size_t i = 0; i < coarse_.size(); ++i)
+        volume[static_cast<std::size_t>(coarse_.region[i])] += films_.liquid_volume[i];
     for (std::size_t r = 0; r < gas_.size(); ++r) velocity[r] = velocity[r] / volume[r];
     return velocity;
 }
 
-/// Coarse particles follow the film along its normals and its region as a whole, and spread; where they leave the liquid
-/// behind, they take the velocity of the place they come to.
+/// The filter, and coarse particles that slip through the film, change a region's momentum by a few millionths of m c.
+/// The uniform velocity along the normals that has it is added. Films without fine particles fly with their normal
+/// motion and need none.
+void MelpSolver::give_back(const std::vector<Vec3>& momentum) {
+    std::vector<Vec3> velocity(coarse_.size());
+    for (std::size_t i = 0; i < coarse_.size(); ++i) velocity[i] = velocity_of(i);
+    const std::vector<Vec3> now = region_momenta(velocity);
+    std::vector<std::array<double, 9>> along(gas_.size());  // sum V n n^T
+    for (std::size_t i = 0; i < coarse_.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t m = 0; m < 3; ++m)
+                along[static_cast<std::size_t>(coarse_.region[i])][3 * k + m] +=
+                    films_.liquid_volume[i] * geometry_.normal[i][k] * geometry_.normal[i][m];
+    std::vector<Vec3> missing(gas_.size());
+    for (std::size_t r = 0; r < gas_.size(); ++r) {
+        if (even_[r].liquid_volume > 0.0) continue;
+        std::array<double, 3> u{};
+        for (std::size_t k = 0; k < 3; ++k) u[k] = momentum[r][k] - now[r][k];
+        if (linalg::solve_positive<3>(along[r], u)) missing[r] = {{u[0], u[1], u[2]}};
+    }
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        const Vec3& n = geometry_.normal[i];
+        coarse_.velocity[i] += dot(missing[static_cast<std::size_t>(coarse_.region[i])], n) * n;
+    }
+}
+
+/// Coarse particles follow the film along its normals and its region as a whole, and spread; where they leave the
+/// liquid behind, they take the velocity of the place they come to.
 void MelpSolver::move_coarse(double dt, const NormalStep& step) {
     const std::vector<Vec3> mean = region_velocities();
-    const std::vector<Vec3> shift = options_.redistribution
-                                        ? evening_shift(geometry_, coarse_, gas_.size(), spacing_)
-                                        : std::vector<Vec3>(coarse_.size());
+    const std::vector<Vec3> shift = options_.redistribution ? evening_shift(geometry_, coarse_, gas_.size(), spacing_)
+                                                            : std::vector<Vec3>(coarse_.size());
     const std::vector<Tensor> slope = gradient(geometry_, coarse_.position, coarse_.velocity);
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         const Vec3& n = geometry_.normal[i];
@@ -283,7 +320,8 @@ double MelpSolver::slowest_period(const std::vector<Gas>& bubbles) const {
     double shortest = std::numeric_limits<double>::infinity();
     for (const Gas& gas : bubbles) {
         const double radius = std::cbrt(0.75 * gas.volume / std::numbers::pi);
-        const double mass = options_.liquid_density * material.thickness + options_.air_mass * material.air_density * radius;
+        const double mass =
+            options_.liquid_density * material.thickness + options_.air_mass * material.air_density * radius;
         shortest = std::min(shortest, std::numbers::pi * radius * std::sqrt(mass / material.film_tension()));
     }
     return shortest;

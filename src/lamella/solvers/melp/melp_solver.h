@@ -10,6 +10,7 @@
 #include "lamella/solvers/melp/transfer.h"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -57,11 +58,13 @@ private:
     void move_fine(double dt);
     void update_shape();
     void update_liquid();
+    void give_back(const std::vector<Vec3>& momentum);
     void follow_particle_volumes(double dt);
 
     std::vector<double> masses() const;
     Vec3 velocity_of(std::size_t i) const;
     sim::Surface surface() const;
+    std::vector<Vec3> region_momenta(std::span<const Vec3> velocity) const;
     std::vector<Vec3> region_velocities() const;
     void even_out_layout();
     std::string fault_of_step() const;
@@ -77,8 +80,8 @@ private:
     double spacing_ = 0.0;
     double time_ = 0.0;
     std::int64_t steps_ = 0;
-    double step_ = 0.0;             ///< the last one
-    double initial_liquid_ = 0.0;   ///< [m^3]
+    double step_ = 0.0;            ///< the last one
+    double initial_liquid_ = 0.0;  ///< [m^3]
 
     // What follows from the above: set by update_shape and update_liquid.
     Geometry geometry_;

@@ -62,8 +62,10 @@ NeighborLists find_neighbors(std::span<const Vec3> position,
             const std::size_t mine_begin = mine.index.size(), theirs_begin = theirs.index.size();
             grid.for_each_near(position[i], support_radius, [&](std::uint32_t j) {
                 if (j == i || squared_norm(position[i] - position[j]) >= reach) return;
-                if (region[i] != region[j]) theirs.index.push_back(j);
-                else if (dot(normal[i], normal[j]) > kAgreeing) mine.index.push_back(j);
+                if (region[i] != region[j])
+                    theirs.index.push_back(j);
+                else if (dot(normal[i], normal[j]) > kAgreeing)
+                    mine.index.push_back(j);
             });
             close_row(mine, mine_begin);
             close_row(theirs, theirs_begin);

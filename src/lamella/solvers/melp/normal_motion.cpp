@@ -19,7 +19,9 @@ Cohesion cohesion(double gamma, double beta) {
 
 namespace {
 
-std::size_t region_of(const CoarseParticles& coarse, std::size_t i) { return static_cast<std::size_t>(coarse.region[i]); }
+std::size_t region_of(const CoarseParticles& coarse, std::size_t i) {
+    return static_cast<std::size_t>(coarse.region[i]);
+}
 
 /// Strengths of the pairs: c_ij, of one region and of two. [N/m]
 struct Pairs {
@@ -66,7 +68,8 @@ std::vector<double> forces(const NormalProblem& p, const Pairs& pairs, const std
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) pull += pairs.same[k] * (x[same.index[k]] - x[i]);
         const Neighbors& other = g.neighbors.other;
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) pull += pairs.other[k] * (x[other.index[k]] - x[i]);
-        force[i] = dot(pull, g.normal[i]) + p.gas[region_of(p.coarse, i)].gauge_pressure(p.outside_pressure) * gas_area[i];
+        force[i] =
+            dot(pull, g.normal[i]) + p.gas[region_of(p.coarse, i)].gauge_pressure(p.outside_pressure) * gas_area[i];
     });
     return force;
 }
@@ -104,7 +107,9 @@ public:
 
     /// Takes from values along the normals what pushes and twists: of all changes share_i e_i . z, with e_i the rigid
     /// motions along the normal, the one after which sum_i (values_i n_i + beside_i) has no resultant and no moment.
-    void remove_resultant(std::vector<double>& values, std::span<const Vec3> beside, std::span<const double> share) const {
+    void remove_resultant(std::vector<double>& values,
+                          std::span<const Vec3> beside,
+                          std::span<const double> share) const {
         std::array<double, kRigid * kRigid> matrix{};
         std::array<double, kRigid> resultant{};
         for (const std::size_t i : members_) {
@@ -153,9 +158,9 @@ std::vector<FreeCluster> free_clusters(const NormalProblem& p) {
     return free;
 }
 
-/// The areas that gas pushes on [m^2]. Those of a closed bubble push it nowhere and do not turn it, so that it flies and turns
-/// without a change of volume. Sums over particles know that to a thousandth, but gas at one atmosphere moves a bubble by
-/// what is left.
+/// The areas that gas pushes on [m^2]. Those of a closed bubble push it nowhere and do not turn it, so that it flies
+/// and turns without a change of volume. Sums over particles know that to a thousandth, but gas at one atmosphere moves
+/// a bubble by what is left.
 std::vector<double> gas_areas(const NormalProblem& p) {
     std::vector<double> area = p.geometry.area;
     const std::vector<Vec3> nothing(area.size());
@@ -251,7 +256,8 @@ NormalStep move_along_normals(const NormalProblem& p) {
     constexpr int kMostIterations = 2000;
     step.solution = linalg::conjugate_gradient(apply, scale, right, step.velocity, p.tolerance, kMostIterations);
 
-    // What the implicit terms have added pushes nothing as a whole either: a rigid motion mends that, which strains no film.
+    // What the implicit terms have added pushes nothing as a whole either: a rigid motion mends that, which strains no
+    // film.
     std::vector<double> added(count);
     for (std::size_t i = 0; i < count; ++i) added[i] = inertia[i] * step.velocity[i] - given[i];
     const std::vector<Vec3> nothing(count);

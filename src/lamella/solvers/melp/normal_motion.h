@@ -13,19 +13,19 @@ namespace lamella::melp {
 struct NormalProblem {
     const CoarseParticles& coarse;
     const Geometry& geometry;
-    std::span<const Gas> gas;                    ///< per region
-    double outside_pressure;                     ///< [Pa]
-    std::span<const double> mass;                ///< [kg]
-    std::span<const double> interface_tension;   ///< sigma of one interface [N/m]
-    std::span<const double> velocity;            ///< along the normals, at the start of the step [m/s]
-    std::span<const Vec3> internal;              ///< forces along the film that the films exert on each other [N]
-    std::span<const Vec3> external;              ///< forces from outside, e.g. weight [N]
-    bool floating;                               ///< the air carries the external forces on free bubbles as a whole
-    double junction_correction;                  ///< beta of the cohesion
-    double damping;                              ///< [1/s]
+    std::span<const Gas> gas;                   ///< per region
+    double outside_pressure;                    ///< [Pa]
+    std::span<const double> mass;               ///< [kg]
+    std::span<const double> interface_tension;  ///< sigma of one interface [N/m]
+    std::span<const double> velocity;           ///< along the normals, at the start of the step [m/s]
+    std::span<const Vec3> internal;             ///< forces along the film that the films exert on each other [N]
+    std::span<const Vec3> external;             ///< forces from outside, e.g. weight [N]
+    bool floating;                              ///< the air carries the external forces on free bubbles as a whole
+    double junction_correction;                 ///< beta of the cohesion
+    double damping;                             ///< [1/s]
     double theta;
-    double dt;                                   ///< [s]
-    double tolerance;                            ///< of the linear solve
+    double dt;         ///< [s]
+    double tolerance;  ///< of the linear solve
 };
 
 struct NormalStep {
@@ -43,14 +43,15 @@ struct NormalStep {
 ///
 ///   (J_film v)_i = sum_j c_ij (v_j - n_i . n_j v_i),   c_ij = (tau_i + tau_j) / 2 a_i a_j omega_ij,
 ///
-/// and that of each gas, -(p / V) b b^T with the areas b that it pushes on, always fully implicit: the breathing of bubbles is far faster than any step.
-/// The cosine lets a film move as a whole without resistance: v = U . n changes no force where particles are evenly
-/// spread. It stands for the |kappa|^2 of the sheet, sum c (1 - n_i . n_j) = tau a |kappa|^2 in the limit; with curvatures
-/// from patches, right to half a percent, a flying bubble gained 0.017 % of its speed per millisecond.
+/// and that of each gas, -(p / V) b b^T with the areas b that it pushes on, always fully implicit: the breathing of
+/// bubbles is far faster than any step. The cosine lets a film move as a whole without resistance: v = U . n changes no
+/// force where particles are evenly spread. It stands for the |kappa|^2 of the sheet, sum c (1 - n_i . n_j) = tau a
+/// |kappa|^2 in the limit; with curvatures from patches, right to half a percent, a flying bubble gained 0.017 % of its
+/// speed per millisecond.
 ///
 /// Regions cohere where their films touch [method sheet 16.4, eq. 11]: two films have the tension of one in common, and
-/// meet a third at 120 degrees. Internal forces, `internal` along the film counted, neither push nor twist a free cluster as
-/// a whole: what discretization leaves is removed.
+/// meet a third at 120 degrees. Internal forces, `internal` along the film counted, neither push nor twist a free
+/// cluster as a whole: what discretization leaves is removed.
 NormalStep move_along_normals(const NormalProblem& problem);
 
 /// The tension of the particle's own film and that toward other regions, per interface tension; gamma is how much film

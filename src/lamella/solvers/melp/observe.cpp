@@ -24,7 +24,8 @@ Spread spread_of(const std::vector<double>& value, const std::vector<double>& we
     if (value.empty()) return s;
     const double total = sum(weight);
     for (std::size_t i = 0; i < value.size(); ++i) s.mean += weight[i] * value[i] / total;
-    for (std::size_t i = 0; i < value.size(); ++i) s.deviation += weight[i] * (value[i] - s.mean) * (value[i] - s.mean) / total;
+    for (std::size_t i = 0; i < value.size(); ++i)
+        s.deviation += weight[i] * (value[i] - s.mean) * (value[i] - s.mean) / total;
     s.deviation = std::sqrt(s.deviation);
     s.least = *std::min_element(value.begin(), value.end());
     s.largest = *std::max_element(value.begin(), value.end());
@@ -40,7 +41,8 @@ sim::Surface MelpSolver::surface() const {
     sim::Surface surface;
     surface.position = coarse_.position;
     surface.triangles = surface_triangles(coarse_, geometry_);
-    for (const auto& t : surface.triangles) surface.regions.push_back({gas_[static_cast<std::size_t>(coarse_.region[t[0]])].region, 0});
+    for (const auto& t : surface.triangles)
+        surface.regions.push_back({gas_[static_cast<std::size_t>(coarse_.region[t[0]])].region, 0});
     sim::Field velocity{"velocity", "m/s", 3, false, {}};
     for (std::size_t i = 0; i < coarse_.size(); ++i) append(velocity.values, velocity_of(i));
     surface.vertex_fields = {{"thickness", "m", 1, false, films_.seen_thickness},
@@ -110,11 +112,13 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
         fastest = std::max(fastest, std::hypot(v, norm(films_.along[i])));
     }
     const double liquid = sum(fine_.liquid_volume) +
-                          std::accumulate(even_.begin(), even_.end(), 0.0,
-                                          [](double total, const EvenFilm& film) { return total + film.liquid_volume; });
+                          std::accumulate(even_.begin(), even_.end(), 0.0, [](double total, const EvenFilm& film) {
+                              return total + film.liquid_volume;
+                          });
     const double surfactant = sum(fine_.surfactant) +
-                              std::accumulate(even_.begin(), even_.end(), 0.0,
-                                              [](double total, const EvenFilm& film) { return total + film.surfactant; });
+                              std::accumulate(even_.begin(), even_.end(), 0.0, [](double total, const EvenFilm& film) {
+                                  return total + film.surfactant;
+                              });
     double gas = 0.0, work = 0.0, volume_error = 0.0;
     const std::vector<double> volume = particle_volumes(coarse_, geometry_, gas_);
     for (std::size_t r = 0; r < gas_.size(); ++r) {
@@ -143,8 +147,10 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
          "kappa_1 + kappa_2, -2 / R for a sphere, weighted with area"},
         {"max_velocity", "m/s", fastest, "of the films"},
         {"time_step", "s", step_, "the last one"},
-        {"density_spread", "-", density_spread(geometry_, coarse_, gas_.size()), "(largest - smallest) / mean of coarse particles per area"},
-        {"strays", "-", static_cast<double>(transfer_ ? transfer_->strays() : 0), "fine particles that no coarse one reaches"},
+        {"density_spread", "-", density_spread(geometry_, coarse_, gas_.size()),
+         "(largest - smallest) / mean of coarse particles per area"},
+        {"strays", "-", static_cast<double>(transfer_ ? transfer_->strays() : 0),
+         "fine particles that no coarse one reaches"},
         {"coarse_particles", "-", static_cast<double>(coarse_.size()), "that carry the shape"},
         {"fine_particles", "-", static_cast<double>(fine_.size()), "that are the liquid"},
     };
@@ -169,12 +175,14 @@ std::vector<sim::Scalar> MelpSolver::characteristic_numbers() const {
         {"fine_particles", "-", static_cast<double>(start.fine.size()), "at the start"},
         {"spacing", "m", start.spacing, "of coarse particles"},
         {"support_radius", "m", options_.support_radius * start.spacing, "of the kernels"},
-        {"membrane_wave_speed", "m/s", std::sqrt(material.film_tension() / mass), "across the film; of the rim of a hole too"},
+        {"membrane_wave_speed", "m/s", std::sqrt(material.film_tension() / mass),
+         "across the film; of the rim of a hole too"},
         {"elastic_wave_speed", "m/s", std::sqrt(elasticity / mass), "of thickness waves along the film (Marangoni)"},
         {"drainage_rate", "1/m", gravity > 0.0 && elasticity > 0.0 ? mass * gravity / elasticity : 0.0,
          "a film at rest under gravity is thinner by exp(- this * height)"},
         {"slowest_period", "s", slowest_period(start.gas), "of the smallest bubble"},
-        {"swing_step", "s", options_.steps_per_period > 0.0 ? slowest_period(start.gas) / options_.steps_per_period : 0.0,
+        {"swing_step", "s",
+         options_.steps_per_period > 0.0 ? slowest_period(start.gas) / options_.steps_per_period : 0.0,
          "upper limit of the step from steps_per_period; 0: none"},
         {"air_mass", "-", options_.air_mass, "0: films swing alone; 5/6: with the air of mode 2"},
     };

@@ -59,9 +59,8 @@ std::vector<double> laplacian(const Geometry& g, std::span<const double> q) {
 }
 
 std::vector<Vec3> unevenness(const Geometry& g, std::span<const Vec3> x) {
-    return sum_over_neighbors<Vec3>(g, [&](Vec3& sum, std::size_t i, std::size_t j, std::size_t k) {
-        sum += weighted_gradient(g, x, i, j, k);
-    });
+    return sum_over_neighbors<Vec3>(
+        g, [&](Vec3& sum, std::size_t i, std::size_t j, std::size_t k) { sum += weighted_gradient(g, x, i, j, k); });
 }
 
 std::vector<Vec3> roughness(const Geometry& g, std::span<const Vec3> w) {

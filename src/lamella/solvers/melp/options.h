@@ -19,8 +19,10 @@ struct StartOptions {
                {"amplitude of the first octave, over the thickness; surfactant goes with the liquid", "-", "[Deng22]"});
         option("noise_length", noise_length, sim::at_least(0.0),
                {"wave length of the first octave; 0: 1.4 times the largest bubble's radius", "length", "[Deng22]"});
-        option("noise_octaves", noise_octaves, sim::between(1, 12), {"each half as long and half as high as the one before"});
-        option("mode", mode, sim::between(1, 8), {"bubbles swing in this mode: degree of the Legendre polynomial about x"});
+        option("noise_octaves", noise_octaves, sim::between(1, 12),
+               {"each half as long and half as high as the one before"});
+        option("mode", mode, sim::between(1, 8),
+               {"bubbles swing in this mode: degree of the Legendre polynomial about x"});
         option("mode_amplitude", mode_amplitude, sim::between(-0.3, 0.3), {"over the radius; 0: they start round"});
     }
 };
@@ -58,7 +60,9 @@ struct Options {
         option("support_radius", support_radius, sim::between(2.0, 6.0),
                {"of the kernels, in spacings of the coarse particles", "-", "[method sheet 16]"});
         option("theta", theta, sim::between(0.5, 1.0),
-               {"of the motion along the normals: 0.5 damps nothing, 0.51 the waves between particles, 1 all; steps longer than a tenth of the slowest swing of the smallest bubble take 1, and bubbles that touch", "-", "[method sheet 16.2]"});
+               {"of the motion along the normals: 0.5 damps nothing, 0.51 the waves between particles, 1 all; steps "
+                "longer than a tenth of the slowest swing of the smallest bubble take 1, and bubbles that touch",
+                "-", "[method sheet 16.2]"});
         option("steps_per_period", steps_per_period, sim::at_least(0.0),
                {"of the slowest swing of the smallest bubble; 0: only how far particles move limits the step"});
         option("cfl", cfl, sim::between(0.01, 2.0), {"how far particles move in a step, in spacings"});
@@ -66,27 +70,33 @@ struct Options {
         option("liquid_density", liquid_density, sim::more_than(0.0), {"of the film", "mass/length^3"});
         option("surfactant_concentration", surfactant_concentration, sim::at_least(0.0),
                {"per interface, at which the tension is the material's; 0: no surfactant", "mol/m^2", "[Deng22]"});
-        option("temperature", temperature, sim::more_than(0.0), {"of the film: surfactant lowers the tension by R T each", "K"});
+        option("temperature", temperature, sim::more_than(0.0),
+               {"of the film: surfactant lowers the tension by R T each", "K"});
         option("outside_pressure", outside_pressure, sim::more_than(0.0), {"of the air", "Pa"});
-        option("air_mass", air_mass, sim::between(0.0, 2.0),
-               {"share of the air that swings with a bubble: air_density * radius * this is added to the film's mass per "
-                "area; 5/6 is right for mode 2; 0: the film swings alone, as published", "-", "[method sheet 15.3]"});
+        option(
+            "air_mass", air_mass, sim::between(0.0, 2.0),
+            {"share of the air that swings with a bubble: air_density * radius * this is added to the film's mass per "
+             "area; 5/6 is right for mode 2; 0: the film swings alone, as published",
+             "-", "[method sheet 15.3]"});
         option("air_drag", air_drag, sim::at_least(0.0),
-               {"force of the air per area and speed along the film, and against the side that the wind blows on; the paper "
-                "has 1e-3", "mass/(length^2*time)", "[Deng22]"});
+               {"force of the air per area and speed along the film, and against the side that the wind blows on; the "
+                "paper has 1e-3",
+                "mass/(length^2*time)", "[Deng22]"});
         option("wind", wind, sim::any_number(), {"velocity of the air that drags", "length/time"});
         option("floating", floating,
                {"the air carries the weight of free bubbles, by forces along the normals: they drain and do not fall"});
-        option("damping", damping, sim::at_least(0.0), {"rate at which the motion along normals decays: to settle", "1/time"});
+        option("damping", damping, sim::at_least(0.0),
+               {"rate at which the motion along normals decays: to settle", "1/time"});
         option("grid_filter", grid_filter, sim::between(0.0, 1.0),
-               {"share of the motion along normals that the shortest waves between particles lose per step; bubbles that fly or "
-                "swing lose next to nothing"});
+               {"share of the motion along normals that the shortest waves between particles lose per step; bubbles "
+                "that fly or swing lose next to nothing"});
         option("junction_correction", junction_correction, sim::between(0.0, 1.0),
                {"beta of the cohesion between bubbles: cancels the tension of the blurred line where films meet", "-",
                 "[method sheet 16.4]"});
         option("redistribution", redistribution, {"coarse particles are kept evenly spread"});
         option("volume_rate", volume_rate, sim::at_least(0.0),
-               {"at which the gas volume that films have swept follows the particles' own", "1/time", "[method sheet 16.2]"});
+               {"at which the gas volume that films have swept follows the particles' own", "1/time",
+                "[method sheet 16.2]"});
         option("thickness_rate", thickness_rate, sim::at_least(0.0),
                {"at which the thickness of fine particles follows that of the coarse ones", "1/time", "[Deng22]"});
         option("solver_tolerance", solver_tolerance, sim::strictly_between(0.0, 0.1),

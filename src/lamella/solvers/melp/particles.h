@@ -33,14 +33,14 @@ struct CoarseParticles {
 
 /// Lagrangian particles: many, they are the liquid and move with it.
 struct FineParticles {
-    std::vector<Vec3> position;              ///< [m]
-    std::vector<Vec3> normal;                ///< of the film there
-    std::vector<Vec3> velocity;              ///< [m/s]
-    std::vector<Tensor> gradient;        ///< of the velocity along the film, one row per component [1/s]
-    std::vector<double> liquid_volume;       ///< [m^3]
-    std::vector<double> surfactant;          ///< per interface [mol]
-    std::vector<double> thickness;           ///< of the film there: what is seen [m]
-    std::vector<std::int32_t> region;        ///< as of coarse particles
+    std::vector<Vec3> position;         ///< [m]
+    std::vector<Vec3> normal;           ///< of the film there
+    std::vector<Vec3> velocity;         ///< [m/s]
+    std::vector<Tensor> gradient;       ///< of the velocity along the film, one row per component [1/s]
+    std::vector<double> liquid_volume;  ///< [m^3]
+    std::vector<double> surfactant;     ///< per interface [mol]
+    std::vector<double> thickness;      ///< of the film there: what is seen [m]
+    std::vector<std::int32_t> region;   ///< as of coarse particles
 
     std::size_t size() const { return position.size(); }
 
@@ -59,11 +59,11 @@ struct FineParticles {
 
 /// Gas that films close in. Isothermal, ideal, of one pressure.
 struct Gas {
-    std::int32_t region = 0;  ///< its number in the scene
-    double amount = 0.0;      ///< pressure * volume, constant [J]
-    double volume = 0.0;      ///< what the films have swept; follows the particles' own volume slowly [m^3]
-    double calibration = 1.0; ///< true volume at the start / the particles' own volume then
-    bool closed = true;       ///< false: a film on a wire, the same air on both sides
+    std::int32_t region = 0;   ///< its number in the scene
+    double amount = 0.0;       ///< pressure * volume, constant [J]
+    double volume = 0.0;       ///< what the films have swept; follows the particles' own volume slowly [m^3]
+    double calibration = 1.0;  ///< true volume at the start / the particles' own volume then
+    bool closed = true;        ///< false: a film on a wire, the same air on both sides
 
     /// Above that of the outside air [Pa].
     double gauge_pressure(double outside) const { return closed ? amount / volume - outside : 0.0; }

@@ -20,6 +20,46 @@ using mesh::RegionId;
 using mesh::RegionKind;
 using mesh::VertexId;
 
+/// Where bubbles meet, films fold within a few spacings. Coarser ones, ones with a flow in their films, and three at a
+/// time were seen to tear there.
+void refuse_coarse_contacts(const film::Problem& films, const Options& options) {
+    const auto& regions = films.mesh.regions;
+    const auto bubbles =
+        std::count_if(regions.begin(), regions.end(), [](const auto& r) { return r.kind == RegionKind::kClosed; });
+    if (bubbles < 2) return;
+    if (bubbles > 2)
+        throw InputError(fmt::format(
+            "melp: {} bubbles: more than two are not built yet; use solver vortex_sheet or equilibrium", bubbles));
+    if (options.fine_ratio > 0)
+        throw InputError(
+            fmt::format("melp.fine_ratio = {}: several bubbles with a flow in their films are not built yet; "
+                        "fine_ratio = 0 moves them without one",
+                        options.fine_ratio));
+    constexpr double kFinest = 10.0;
+    for (const RegionId r : regions.ids()) {
+        const double radius = std::cbrt(0.75 * regions[r].target_volume / std::numbers::pi);
+        if (regions[r].kind == RegionKind::kClosed && films.edge_length > 1.001 * radius / kFinest)
+            throw InputError(
+                fmt::format("resolution.edge_length = {:.4g} m is too coarse for bubble {} among others: at most a "
+                            "tenth of its radius of {:.4g} m will do",
+                            films.edge_length, index(r), radius));
+    }
+}
+
+/// Balls that overlap at the start are meshed as cells of up to twice their volume: gas would burst out of them.
+void refuse_wrong_volumes(const film::Problem& films) {
+    constexpr double kFarthest = 0.1;
+    const IdVector<RegionId, double> volume = mesh::region_volumes(films.mesh);
+    for (const RegionId r : films.mesh.regions.ids()) {
+        const mesh::Region& region = films.mesh.regions[r];
+        if (region.kind == RegionKind::kClosed && std::abs(volume[r] / region.target_volume - 1.0) > kFarthest)
+            throw InputError(
+                fmt::format("melp: bubble {} would start with {:.3g} times its volume, as bubbles that overlap at the "
+                            "start do; put them a hundredth of a radius apart, they join by themselves",
+                            index(r), volume[r] / region.target_volume));
+    }
+}
+
 /// The surface of one closed region.
 struct RegionSurface {
     std::vector<std::array<Vec3, 3>> triangle;  ///< seen from outside in mathematical order
@@ -57,7 +97,8 @@ struct Ball {
 std::optional<Ball> ball_of(const RegionSurface& surface) {
     Ball ball;
     for (const Vec3& x : surface.vertex) ball.center += x / static_cast<double>(surface.vertex.size());
-    for (const Vec3& x : surface.vertex) ball.radius += norm(x - ball.center) / static_cast<double>(surface.vertex.size());
+    for (const Vec3& x : surface.vertex)
+        ball.radius += norm(x - ball.center) / static_cast<double>(surface.vertex.size());
     constexpr double kRound = 1e-6;
     for (const Vec3& x : surface.vertex)
         if (std::abs(norm(x - ball.center) - ball.radius) > kRound * ball.radius) return std::nullopt;
@@ -121,36 +162,21 @@ void deform(std::vector<Vec3>& position, const Vec3& center, const StartOptions&
 
 }  // namespace
 
-/// Where bubbles meet, films fold within a few spacings. Coarser ones, and ones with a flow in their films, were seen to tear
-/// there and blow up.
-void refuse_coarse_contacts(const film::Problem& films, const Options& options) {
-    const auto& regions = films.mesh.regions;
-    if (std::count_if(regions.begin(), regions.end(), [](const auto& r) { return r.kind == RegionKind::kClosed; }) < 2) return;
-    if (options.fine_ratio > 0)
-        throw InputError(fmt::format("melp.fine_ratio = {}: several bubbles with a flow in their films are not built yet; "
-                                     "fine_ratio = 0 moves them without one", options.fine_ratio));
-    constexpr double kFinest = 10.0;
-    for (const RegionId r : regions.ids()) {
-        const double radius = std::cbrt(0.75 * regions[r].target_volume / std::numbers::pi);
-        if (regions[r].kind == RegionKind::kClosed && films.edge_length > 1.001 * radius / kFinest)
-            throw InputError(fmt::format("resolution.edge_length = {:.4g} m is too coarse for bubble {} among others: at most a "
-                                         "tenth of its radius of {:.4g} m will do", films.edge_length, index(r), radius));
-    }
-}
-
 void refuse_unknown_films(const film::Problem& films, const Options& options) {
     const FoamMesh& mesh = films.mesh;
     if (mesh.periodic()) throw InputError("melp: films in a periodic box are for solver equilibrium");
     for (const mesh::Face& face : mesh.faces)
         for (const RegionId r : {face.back, face.front})
             if (r != mesh::kOutside && mesh.regions[r].kind != RegionKind::kClosed)
-                throw InputError("melp: films on wires are not built yet; it knows closed bubbles ([[bubble]], [foam])");
+                throw InputError("melp: films on wires are not built yet; it knows closed bubbles ([[bubble]])");
     for (const VertexId v : mesh.position.ids())
         if (mesh.on_wire[v] != 0) throw InputError("melp: films on wires are not built yet; use solver vortex_sheet");
     if (!films.wires.empty()) throw InputError("melp: [[wire]] is not built yet; use solver vortex_sheet");
     if (!films.tensions.empty()) throw InputError("melp: [[tension]] is not built yet; use solver equilibrium");
-    if (!films.events.empty()) throw InputError("melp: [[event]] is not built yet; use solver vortex_sheet or equilibrium");
+    if (!films.events.empty())
+        throw InputError("melp: [[event]] is not built yet; use solver vortex_sheet or equilibrium");
     refuse_coarse_contacts(films, options);
+    refuse_wrong_volumes(films);
 }
 
 std::vector<Vec3> fibonacci_sphere(std::size_t count) {
@@ -226,7 +252,9 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
     return start;
 }
 
-std::vector<double> particle_volumes(const CoarseParticles& coarse, const Geometry& geometry, const std::vector<Gas>& gas) {
+std::vector<double> particle_volumes(const CoarseParticles& coarse,
+                                     const Geometry& geometry,
+                                     const std::vector<Gas>& gas) {
     std::vector<Vec3> center(gas.size());
     std::vector<double> area(gas.size(), 0.0), volume(gas.size(), 0.0);
     for (std::size_t i = 0; i < coarse.size(); ++i) {

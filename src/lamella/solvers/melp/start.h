@@ -21,16 +21,17 @@ struct Start {
 
 /// Every closed region of the problem gets particles on all of its surface, normals outward; a film between two of them
 /// so has two layers. Spheres get Fibonacci's spiral, which is even to 0.1 % [method sheet 16.1], other shapes the
-/// vertices of their mesh. Gas has the pressure that the virial theorem gives: p - p_out = 2/3 film tension * area / volume,
-/// 4 sigma / R for a sphere.
+/// vertices of their mesh. Gas has the pressure that the virial theorem gives: p - p_out = 2/3 film tension * area /
+/// volume, 4 sigma / R for a sphere.
 /// @throws InputError  films that this solver does not know, or no bubble
 Start start_particles(const film::Problem& films, const Options& options, std::uint64_t seed);
 
-/// @throws InputError  films that this solver does not know, or several bubbles that it could not follow through a contact
+/// @throws InputError  films that this solver does not know, or several bubbles that it could not follow through a
+/// contact
 void refuse_unknown_films(const film::Problem& films, const Options& options);
 
-/// `count` points spread evenly over the unit sphere along a spiral: point i has height 1 - (2 i + 1) / count and turns by
-/// the golden angle from the one before.
+/// `count` points spread evenly over the unit sphere along a spiral: point i has height 1 - (2 i + 1) / count and turns
+/// by the golden angle from the one before.
 std::vector<Vec3> fibonacci_sphere(std::size_t count);
 
 /// The volume that closes in under the particles of each region, sum a (x - o) . n / 3 about their center o, times the

@@ -19,8 +19,8 @@ Triangle turned(Triangle t) {
     return t;
 }
 
-/// The neighbors of particle i that its Voronoi cell in the tangent plane touches, in turn: the cell is cut out of a large
-/// square by the bisectors of one neighbor after the other.
+/// The neighbors of particle i that its Voronoi cell in the tangent plane touches, in turn: the cell is cut out of a
+/// large square by the bisectors of one neighbor after the other.
 std::vector<std::uint32_t> delaunay_ring(std::span<const Vec3> position,
                                          const Vec3& normal,
                                          const Neighbors& same,
@@ -31,13 +31,15 @@ std::vector<std::uint32_t> delaunay_ring(std::span<const Vec3> position,
     };
     constexpr std::uint32_t kNobody = 0xffffffffU;
     const double far = same.kernel.support_radius;
-    std::vector<Corner> cell{{-far, -far, kNobody}, {far, -far, kNobody}, {far, far, kNobody}, {-far, far, kNobody}}, cut;
+    std::vector<Corner> cell{{-far, -far, kNobody}, {far, -far, kNobody}, {far, far, kNobody}, {-far, far, kNobody}},
+        cut;
     const Frame frame = frame_of(normal);
     for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
         const Vec3 d = position[same.index[k]] - position[i];
         const double u = dot(frame.e1, d), v = dot(frame.e2, d), half = 0.5 * (u * u + v * v);
         const auto beyond = [&](const Corner& c) { return c.u * u + c.v * v - half; };
-        if (half == 0.0 || std::none_of(cell.begin(), cell.end(), [&](const Corner& c) { return beyond(c) > 0.0; })) continue;
+        if (half == 0.0 || std::none_of(cell.begin(), cell.end(), [&](const Corner& c) { return beyond(c) > 0.0; }))
+            continue;
         cut.clear();
         for (std::size_t c = 0; c < cell.size(); ++c) {
             const Corner& a = cell[c];
@@ -143,7 +145,8 @@ std::size_t open_edges(const Triangles& triangles) {
             const std::uint32_t a = t[k], b = t[(k + 1) % 3];
             ++uses[{std::min(a, b), std::max(a, b)}];
         }
-    return static_cast<std::size_t>(std::count_if(uses.begin(), uses.end(), [](const auto& use) { return use.second == 1; }));
+    return static_cast<std::size_t>(
+        std::count_if(uses.begin(), uses.end(), [](const auto& use) { return use.second == 1; }));
 }
 
 }  // namespace lamella::melp

@@ -14,7 +14,10 @@ constexpr double kAgreeing = 0.2;  // least cosine between the normals of a fine
 
 /// One component of a vector column for the lanes of a block; lanes that are not there repeat the last particle.
 template <std::size_t N>
-void load(std::span<const Vec3> column, std::size_t first, std::size_t count, std::array<std::array<double, N>, 3>& to) {
+void load(std::span<const Vec3> column,
+          std::size_t first,
+          std::size_t count,
+          std::array<std::array<double, N>, 3>& to) {
     for (std::size_t l = 0; l < N; ++l) {
         const Vec3& x = column[first + std::min(l, count - 1)];
         for (std::size_t k = 0; k < 3; ++k) to[k][l] = x[k];
@@ -49,7 +52,8 @@ Transfer::Transfer(const CoarseParticles& coarse,
                (chunk.block.empty() || fine.region[first] == fine.region[chunk.block[0].first])) {
             std::size_t last = first;
             while (last < fine.size() && last - first < kLanes && fine.region[last] == fine.region[first]) ++last;
-            chunk.block.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last - first), 0, 0, 0});
+            chunk.block.push_back(
+                {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last - first), 0, 0, 0});
             first = last;
         }
         chunks_.push_back(std::move(chunk));
@@ -110,8 +114,7 @@ void Transfer::find(Chunk& chunk,
             }
         }
         block.rows = static_cast<std::uint32_t>(chunk.candidate.size()) - block.candidates;
-        for (std::size_t l = 0; l < block.count; ++l)
-            inverse_sum_[block.first + l] = sum[l] > 0.0 ? 1.0 / sum[l] : 0.0;
+        for (std::size_t l = 0; l < block.count; ++l) inverse_sum_[block.first + l] = sum[l] > 0.0 ? 1.0 / sum[l] : 0.0;
     }
 }
 
@@ -152,7 +155,8 @@ Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles&
             double* to = &received[c][kKept * k];
             for (std::size_t q = 0; q < 3; ++q) to[q] = sum[k][q];
             for (std::size_t q = 0; q < 3; ++q)
-                to[3 + q] = sum[k][3 + q] + sum[k][6 + 3 * q] * d[0] + sum[k][7 + 3 * q] * d[1] + sum[k][8 + 3 * q] * d[2];
+                to[3 + q] =
+                    sum[k][3 + q] + sum[k][6 + 3 * q] * d[0] + sum[k][7 + 3 * q] * d[1] + sum[k][8 + 3 * q] * d[2];
         }
     });
 

@@ -33,9 +33,9 @@ struct CoarseValues {
 /// so that sum_E w_LE = 1 for each fine particle: what they give away is what arrives. Pairs whose normals disagree
 /// have none. [method sheet 5, 16.5]
 ///
-/// Fine particles that lie next to each other in memory lie next to each other in space (sort_fine_particles). Sixteen of
-/// them make a block, which keeps one dense matrix of weights with all coarse particles that any of them sees: all loops
-/// run over the sixteen with one instruction for eight. Sixteen blocks are a chunk, the work of one task.
+/// Fine particles that lie next to each other in memory lie next to each other in space (sort_fine_particles). Sixteen
+/// of them make a block, which keeps one dense matrix of weights with all coarse particles that any of them sees: all
+/// loops run over the sixteen with one instruction for eight. Sixteen blocks are a chunk, the work of one task.
 class Transfer {
 public:
     /// Finds the pairs and weighs them.
@@ -75,8 +75,8 @@ private:
     using Lanes = std::array<double, kLanes>;
 
     struct Block {
-        std::uint32_t first, count;          // fine particles
-        std::uint32_t candidates, weights;   // where its rows begin in `candidate`, and in `weight` (in rows)
+        std::uint32_t first, count;         // fine particles
+        std::uint32_t candidates, weights;  // where its rows begin in `candidate`, and in `weight` (in rows)
         std::uint32_t rows;
     };
     struct Chunk {
