@@ -10,7 +10,7 @@ Cover cover_of(const Surface& s, std::span<const film::Solid> solids, double tim
         const Vec3 x = s.point(t, {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0});
         for (const film::Solid& solid : solids) {
             const Vec3 arm = x - solid.center_at(time);
-            const double share = std::clamp((solid.radius - norm(arm)) / s.mean_edge + 0.5, 0.0, 1.0);
+            const double share = std::clamp((solid.radius - norm(arm)) / s.mean_edge, 0.0, 1.0);
             if (share <= cover.share[t]) continue;
             Vec3 u = solid.moves(time) ? solid.velocity + cross(solid.spin, arm) : Vec3{};
             u -= dot(u, s.normal[t]) * s.normal[t];

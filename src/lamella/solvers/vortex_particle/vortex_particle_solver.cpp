@@ -313,6 +313,7 @@ void VortexParticleSolver::move_particles(double dt, const MeshFlow& flow) {
     }
     trace(surface_, vertex_velocity(surface_, velocity), dt, particles_);
     bins_ = sort_by_triangle(particles_, surface_.triangles());
+    fill_empty_triangles(surface_, particles_, bins_);
 }
 
 }  // namespace lamella::vortex_particle
