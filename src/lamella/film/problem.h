@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "lamella/core/vec.h"
@@ -68,8 +70,22 @@ struct Event {
     double duration = 0.0;                      ///< inflate: how long it takes, for the solvers that move [s]
 };
 
+/// A ball that a film runs around, as a stick through it: it moves and turns as it is told, and takes the film with it.
+/// [[solid]] of a scene.
+struct Solid {
+    Vec3 center;         ///< at time 0 [m]
+    double radius = 0.0; ///< [m]
+    Vec3 velocity;       ///< [m/s]
+    Vec3 spin;           ///< angular velocity [rad/s]
+    double start = 0.0;  ///< it moves from here [s] ...
+    double end = std::numeric_limits<double>::infinity();  ///< ... to here
+
+    bool moves(double time) const { return time >= start && time < end; }
+    Vec3 center_at(double time) const { return center + (std::clamp(time, start, end) - start) * velocity; }
+};
+
 /// What every film solver starts from, whatever its method: scene tables [material], [[bubble]], [[film]], [[wire]],
-/// [foam], [resolution], [[event]], [[vortex]].
+/// [foam], [resolution], [[event]], [[vortex]], [[solid]].
 struct Problem {
     Material material;
     mesh::FoamMesh mesh;        ///< the films at the start
@@ -80,6 +96,7 @@ struct Problem {
     IdVector<mesh::RegionId, Vec3> velocity;               ///< of each bubble at the start [m/s]
     std::vector<Event> events;  ///< in order of time
     std::vector<Vortex> vortices;
+    std::vector<Solid> solids;
 };
 
 }  // namespace lamella::film

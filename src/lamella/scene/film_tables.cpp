@@ -284,6 +284,15 @@ film::Vortex vortex_of(const VortexTable& vortex, const SourceLocation& where) {
     return ready;
 }
 
+film::Solid solid_of(const SolidTable& table, const SourceLocation& where) {
+    if (!(table.radius > 0.0)) throw InputError(where, "solid.radius is missing, e.g. \"5 cm\"");
+    if (table.end > 0.0 && table.end < table.start)
+        throw InputError(where, fmt::format("solid.end = {} comes before solid.start = {}", table.end, table.start));
+    film::Solid solid{.center = table.center, .radius = table.radius, .velocity = table.velocity, .spin = table.spin, .start = table.start};
+    if (table.end > 0.0) solid.end = table.end;
+    return solid;
+}
+
 /// The velocity that the scene gives to each of its bubbles; films and foams have none.
 IdVector<mesh::RegionId, Vec3> start_velocities(const FilmTables& tables, const FoamMesh& mesh) {
     IdVector<mesh::RegionId, Vec3> velocity(mesh.regions.size());
@@ -324,7 +333,8 @@ std::vector<FilmTableInfo> film_table_infos() {
             info_of<TensionTable>("tension", "films that are tenser than others: [[tension]]", true),
             info_of<WireTable>("wire", "a wire that holds films, at rest or moving: [[wire]]", true),
             info_of<EventTable>("event", "what happens to bubbles on the way: [[event]]", true),
-            info_of<VortexTable>("vortex", "what swirls in the film at the start: [[vortex]]", true)};
+            info_of<VortexTable>("vortex", "what swirls in the film at the start: [[vortex]]", true),
+            info_of<SolidTable>("solid", "a ball that stirs the film: [[solid]]", true)};
 }
 
 FilmTables read_film_tables(const sim::Node& root) {
@@ -336,7 +346,8 @@ FilmTables read_film_tables(const sim::Node& root) {
                       .tensions = read_list<TensionTable>(root, "tension"),
                       .wires = read_list<WireTable>(root, "wire"),
                       .events = read_list<EventTable>(root, "event"),
-                      .vortices = read_list<VortexTable>(root, "vortex")};
+                      .vortices = read_list<VortexTable>(root, "vortex"),
+                      .solids = read_list<SolidTable>(root, "solid")};
     if (root.find("foam") != nullptr) tables.foams.push_back(read_one<FoamTable>(root, "foam"));
     return tables;
 }
@@ -390,6 +401,8 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
     problem.events = events_of(tables, problem.mesh, root);
     for (std::size_t k = 0; k < tables.vortices.size(); ++k)
         problem.vortices.push_back(vortex_of(tables.vortices[k], place(root, "vortex", k)));
+    for (std::size_t k = 0; k < tables.solids.size(); ++k)
+        problem.solids.push_back(solid_of(tables.solids[k], place(root, "solid", k)));
     return problem;
 }
 
@@ -405,6 +418,7 @@ std::string film_tables_toml(const FilmTables& tables, double edge_length) {
     for (const WireTable& wire : tables.wires) text += toml_of("wire", wire, true);
     for (const EventTable& event : tables.events) text += toml_of("event", event, true);
     for (const VortexTable& vortex : tables.vortices) text += toml_of("vortex", vortex, true);
+    for (const SolidTable& solid : tables.solids) text += toml_of("solid", solid, true);
     return text;
 }
 

@@ -258,6 +258,26 @@ struct VortexTable : film::Vortex {
     }
 };
 
+/// One [[solid]]
+struct SolidTable {
+    Vec3 center;
+    double radius = 0.0;
+    Vec3 velocity;
+    Vec3 spin;
+    double start = 0.0;
+    double end = 0.0;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("center", center, sim::any_number(), {"where it is at first", "length"});
+        option("radius", radius, sim::at_least(0.0), {"of the ball", "length"});
+        option("velocity", velocity, sim::any_number(), {"of the ball", "length/time"});
+        option("spin", spin, sim::any_number(), {"angular velocity", "1/time"});
+        option("start", start, sim::at_least(0.0), {"when it begins to move", "time"});
+        option("end", end, sim::at_least(0.0), {"when it stops; 0: never", "time"});
+    }
+};
+
 /// All of them, as read.
 struct FilmTables {
     MaterialTable material;
@@ -269,6 +289,7 @@ struct FilmTables {
     std::vector<WireTable> wires;
     std::vector<EventTable> events;
     std::vector<VortexTable> vortices;
+    std::vector<SolidTable> solids;
 };
 
 /// Their names, and how each is described: "[[bubble]]" may be there several times, "[foam]" once.

@@ -214,6 +214,10 @@ Scene parse_scene(std::string_view text,
             !(solver.films && scene.root.find(other.name)->array() != nullptr))
             scene.notes.push_back(fmt::format("[{}] is not used by solver {}", other.name, solver.name));
 
+    for (const char* table : {"vortex", "solid"})
+        if (solver.films && !solver.stirring && scene.root.find(table) != nullptr)
+            scene.notes.push_back(fmt::format("[[{}]] is not used by solver {}", table, solver.name));
+
     scene.time = sim::read_options<TimeOptions>(table_of(scene, "time"), units_of(solver));
     scene.output = sim::read_options<OutputOptions>(table_of(scene, "output"));
     check_output_count(scene, "frame_rate", scene.time.frame_rate);

@@ -43,6 +43,7 @@ struct SolverEntry {
     std::string summary;
     std::string time_unit = "s";
     bool films = false;  ///< starts from the film tables of a scene (SolverInput::films)
+    bool stirring = false;  ///< uses those that stir the liquid of a film: [[vortex]], [[solid]]
     std::function<std::unique_ptr<Solver>(const SolverInput&)> create;  ///< checks the options, does no work
     std::function<std::vector<OptionInfo>()> describe;
     std::function<Node(const Node& options)> resolve;  ///< the options with every default filled in

@@ -158,7 +158,7 @@ TEST(FilmSurface, KnowsItsWalls) {
     const Surface s = surface_of(mesh::rectangle({}, {{1, 0, 0}}, {{0, 2, 0}}, 0.25));
     ASSERT_EQ(s.loops.size(), 1u);
     EXPECT_NEAR(s.loops[0].length, 6.0, 1e-12);
-    EXPECT_EQ(std::count(s.place.begin(), s.place.end(), Place::kCorner), 4);
+    EXPECT_EQ(std::count(s.place.begin(), s.place.end(), Place::kStill), 4);
     EXPECT_NEAR(s.total_area, 2.0, 1e-12);
 }
 

@@ -35,6 +35,23 @@ TEST(Particles, LieInTheirTrianglesAndSortWithoutLoss) {
         }
 }
 
+TEST(Particles, FillEmptyTrianglesWithoutMakingOrLosingAnything) {
+    const Surface s = surface_of(mesh::disk({}, {{0, 0, 1}}, 1.0, 0.2));
+    Particles particles = spread_particles(s, 2, 3);
+    particles.circulation = random_values(8, particles.size());
+    particles.volume = random_values(9, particles.size());
+    for (std::uint32_t& t : particles.triangle)
+        if (t % 5 < 2) t = 0;  // two fifths of the triangles are empty, some beside each other
+    Bins bins = sort_by_triangle(particles, s.triangles());
+    const double circulation = sum(particles.circulation), volume = sum(particles.volume), area = sum(particles.area);
+    fill_empty_triangles(s, particles, bins);
+    for (std::size_t t = 0; t < s.triangles(); ++t) EXPECT_LT(bins[t], bins[t + 1]);
+    EXPECT_TRUE(std::is_sorted(particles.triangle.begin(), particles.triangle.end()));
+    EXPECT_NEAR(sum(particles.circulation), circulation, 1e-12);
+    EXPECT_NEAR(sum(particles.volume), volume, 1e-12);
+    EXPECT_NEAR(sum(particles.area), area, 1e-12);
+}
+
 TEST(Transfer, PutsOnTheMeshWhatParticlesHaveAndConstantsStayConstant) {
     for (const auto& [name, s, walls] : surfaces_of_every_kind())
         for (const Reach reach : {Reach::kHat, Reach::kKernel}) {

@@ -137,6 +137,44 @@ incompressible = true
     }
 }
 
+/// A film that turns as a whole in a ring that holds it comes to rest: its energy is
+///
+///     E / E_0 = 8 sum exp(-2 nu l_n^2 t / R^2) / l_n^2,   l_n the zeros of the Bessel function J_1
+TEST(WallsWithoutSlip, StopARotationAsViscosityAsks) {
+    constexpr double kZeros[] = {3.8317059702, 7.0155866698, 10.1734681351, 13.3236919363, 16.4706300509, 19.6158585105};
+    std::vector<double> error;
+    for (const double edge : {0.1, 0.05}) {
+        auto solver = solver_of(fmt::format(R"(
+[material]
+kinematic_viscosity = 0.05
+[[film]]
+shape = "disk"
+radius = 1.0
+[[vortex]]
+profile = "rotation"
+rate = 1.0
+[resolution]
+edge_length = {0}
+[vortex_particle]
+incompressible = true
+walls = "no_slip"
+largest_step = {1}
+)", edge, 0.1 * edge));
+        solver->start({});
+        const double start = solver->kinetic_energy();
+        double worst = 0.0;
+        for (const double time : {0.25, 0.5, 1.0}) {
+            run_until(*solver, time);
+            double exact = 0.0;
+            for (const double l : kZeros) exact += 8.0 * std::exp(-2.0 * 0.05 * l * l * time) / (l * l);
+            worst = std::max(worst, std::abs(solver->kinetic_energy() / start / exact - 1.0));
+        }
+        error.push_back(worst);
+    }
+    EXPECT_LT(error[1], 0.006);
+    EXPECT_GT(std::log2(error[0] / error[1]), 1.0);  // steps go down with edges: first order in time
+}
+
 /// eta = eta_0 (1 + eps cos k x) at rest swings with the frequency c k, damped by implicit steps at omega^2 dt / 2.
 TEST(ElasticWave, HasTheFrequencyOfTheGibbsElasticity) {
     constexpr double kStep = 0.002, kOmega = 5.0 * kPi;

@@ -3,6 +3,7 @@
 #include "lamella/core/parallel.h"
 #include "lamella/film/surfactant.h"
 #include "lamella/sim/film_surface.h"
+#include "lamella/solvers/vortex_particle/solids.h"
 #include "lamella/solvers/vortex_particle/vortex_particle_solver.h"
 
 #include <algorithm>
@@ -57,6 +58,9 @@ sim::Frame VortexParticleSolver::frame() const {
     fields.push_back({"vorticity", "1/s", 1, false, std::move(vorticity)});
     fields.push_back({"surfactant_concentration", "mol/m^2", 1, false, flow.surfactant});
     fields.push_back({"dilatation", "1/s", 1, false, std::move(dilatation)});
+    if (!input_.films->solids.empty())
+        frame.surface.face_fields.push_back(
+            {"solid", "-", 1, false, cover_of(surface_, input_.films->solids, time_).share});
     fields.push_back(vectors("velocity", "m/s", vertex_velocity(surface_, flow.velocity)));
     if (options_.particles_in_frames) {
         std::vector<double> thickness(particles_.size());

@@ -107,7 +107,7 @@ std::vector<double> wall_torque(const Surface& s,
 std::vector<Vec3> vertex_velocity(const Surface& s, std::span<const Vec3> u) {
     std::vector<Vec3> mean(s.vertices());
     parallel_for(s.vertices(), [&](std::size_t v) {
-        if (s.place[v] == Place::kCorner) return;
+        if (s.place[v] == Place::kStill) return;
         for (const Incidence& at : s.around(v)) mean[v] += s.area[at.triangle] * u[at.triangle];
         mean[v] *= 1.0 / (3.0 * s.vertex_area[v]);
         mean[v] -= dot(mean[v], s.vertex_normal[v]) * s.vertex_normal[v];

@@ -56,7 +56,8 @@ std::vector<double> wall_torque(const Surface& s,
                                 std::span<const double> thickness,
                                 double strength);
 
-/// Velocity at vertices: the mean of the triangles around, weighted with area, in the tangent plane; on a wall along it.
+/// Velocity at vertices: the mean of the triangles around, weighted with area, in the tangent plane; on a wall that lets
+/// it slip along that, on one that does not zero.
 std::vector<Vec3> vertex_velocity(const Surface& s, std::span<const Vec3> u);
 
 /// Gaussian curvature of each triangle [1/m^2]: the mean of its vertices' angle defects over their areas; 0 at walls.

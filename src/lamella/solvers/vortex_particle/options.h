@@ -73,6 +73,7 @@ struct Options {
     Tracer tracer = Tracer::kExtrapolated;
     bool incompressible = false;
     Viscosity viscosity = Viscosity::kSurface;
+    Walls walls = Walls::kSlip;
     double air_drag = 0.0;
     double largest_step = 0.01;
     double courant = 1.0;
@@ -97,6 +98,8 @@ struct Options {
         option("viscosity", viscosity,
                sim::choices<Viscosity>({{"surface", Viscosity::kSurface}, {"laplace", Viscosity::kLaplace}}),
                {"surface: of a curved sheet, which leaves rigid rotations alone; laplace: as published"});
+        option("walls", walls, sim::choices<Walls>({{"slip", Walls::kSlip}, {"no_slip", Walls::kNoSlip}}),
+               {"what frames and wires do to the flow along them; no_slip needs a viscosity"});
         option("air_drag", air_drag, sim::at_least(0.0), {"rate at which air at rest stops the flow", "1/time"});
         option("largest_step", largest_step, sim::more_than(0.0), {"upper limit of the time step", "time"});
         option("courant", courant, sim::more_than(0.0), {"edges that the fastest particle moves in a step, at most"});

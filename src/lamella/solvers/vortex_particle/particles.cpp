@@ -22,6 +22,39 @@ Bins sort_by_triangle(Particles& particles, std::size_t triangles) {
     return start;
 }
 
+namespace {
+
+/// Appends the half of particle p that goes to the middle of triangle t.
+void split(const Surface& s, std::size_t p, std::uint32_t t, Particles& particles) {
+    for (auto* column : {&particles.circulation, &particles.volume, &particles.amount, &particles.area})
+        (*column)[p] *= 0.5;
+    Particles::for_each_column(particles, [p](const char*, auto& column) { column.push_back(column[p]); });
+    particles.velocity.back() = turned(particles.velocity[p], s.normal[particles.triangle[p]], s.normal[t]);
+    particles.triangle.back() = t;
+    particles.place.back() = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
+}
+
+}  // namespace
+
+void fill_empty_triangles(const Surface& s, Particles& particles, Bins& bins) {
+    constexpr int kMostRounds = 4;
+    for (int round = 0; round < kMostRounds; ++round) {
+        const std::size_t before = particles.size();
+        for (std::uint32_t t = 0; t < s.triangles(); ++t) {
+            if (bins[t] != bins[t + 1]) continue;
+            std::size_t largest = before;
+            for (const std::int32_t n : s.neighbor[t]) {
+                if (n == kNoNeighbor) continue;
+                for (std::size_t p = bins[static_cast<std::size_t>(n)]; p < bins[static_cast<std::size_t>(n) + 1]; ++p)
+                    if (largest == before || particles.area[p] > particles.area[largest]) largest = p;
+            }
+            if (largest != before) split(s, largest, t, particles);
+        }
+        if (particles.size() == before) return;
+        bins = sort_by_triangle(particles, s.triangles());
+    }
+}
+
 Particles spread_particles(const Surface& s, int per_triangle, std::uint64_t seed) {
     // The plastic number g, g^3 = g + 1: steps of 1/g and 1/g^2 fill a square more evenly than any others known.
     constexpr double kStepU = 0.75487766624669276, kStepV = 0.56984029099805327;

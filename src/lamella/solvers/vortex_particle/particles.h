@@ -43,6 +43,10 @@ using Bins = std::vector<std::size_t>;
 /// Sorts the particles by triangle; those of one triangle keep their order.
 Bins sort_by_triangle(Particles& particles, std::size_t triangles);
 
+/// Each triangle without particles gets one in its middle, half of the largest one of its neighbors: nothing is made and
+/// nothing lost. Where the neighbors are empty too it takes another round, of which there are a few.
+void fill_empty_triangles(const Surface& s, Particles& particles, Bins& bins);
+
 /// `per_triangle` particles in each triangle, spread evenly by a sequence of low discrepancy with a start of its own in
 /// each [Roberts18]; area is the triangle's in equal shares, all else is zero.
 Particles spread_particles(const Surface& s, int per_triangle, std::uint64_t seed);

@@ -124,7 +124,7 @@ void measure(Surface& s) {
     s.mean_edge = std::sqrt(4.0 / std::sqrt(3.0) * s.total_area / static_cast<double>(s.triangles()));
 }
 
-void find_walls(Surface& s) {
+void find_walls(Surface& s, Walls walls) {
     constexpr double kStraight = 0.9;  // cosine: walls that turn by more than 26 degrees make a corner
     s.place.assign(s.vertices(), Place::kInside);
     s.wall_normal.assign(s.vertices(), {});
@@ -134,7 +134,8 @@ void find_walls(Surface& s) {
             const Vec3 out = -s.hat_slope[t][k] / norm(s.hat_slope[t][k]);
             for (const std::uint32_t v : {s.corner[t][(k + 1) % 3], s.corner[t][(k + 2) % 3]}) {
                 const bool first = s.place[v] == Place::kInside;
-                s.place[v] = first || dot(s.wall_normal[v], out) > kStraight ? Place::kWall : Place::kCorner;
+                const bool slips = walls == Walls::kSlip && (first || dot(s.wall_normal[v], out) > kStraight);
+                s.place[v] = slips ? Place::kWall : Place::kStill;
                 s.wall_normal[v] += out;
             }
         }
@@ -146,7 +147,7 @@ void find_walls(Surface& s) {
 
 }  // namespace
 
-Surface surface_of(const mesh::FoamMesh& mesh) {
+Surface surface_of(const mesh::FoamMesh& mesh, Walls walls) {
     if (mesh.periodic()) throw InputError("vortex_particle: films in a periodic box are for solver equilibrium");
     Surface s;
     s.position = mesh.position.values();
@@ -159,7 +160,7 @@ Surface surface_of(const mesh::FoamMesh& mesh) {
     find_rings(s);
     find_components_and_loops(s);
     measure(s);
-    find_walls(s);
+    find_walls(s, walls);
     return s;
 }
 

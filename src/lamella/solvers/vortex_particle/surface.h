@@ -25,7 +25,7 @@ struct Incidence {
 enum class Place : std::uint8_t {
     kInside,
     kWall,    ///< flow along the wall only
-    kCorner,  ///< two walls that meet at an angle: no flow
+    kStill,   ///< no flow: on a wall without slip, or where two walls meet at an angle
 };
 
 /// One closed curve of walls.
@@ -78,8 +78,11 @@ struct Surface {
     }
 };
 
+/// What walls do to the flow along them.
+enum class Walls { kSlip, kNoSlip };
+
 /// @throws InputError  films that meet in a triple line, that cannot be oriented, or that fill space periodically
-Surface surface_of(const mesh::FoamMesh& mesh);
+Surface surface_of(const mesh::FoamMesh& mesh, Walls walls = Walls::kSlip);
 
 /// Turns the tangent vector `u` of a surface with normal `from` into one of a surface with normal `to` by the smallest
 /// rotation that does so.

@@ -4,6 +4,7 @@
 #include "lamella/core/parallel.h"
 #include "lamella/film/surfactant.h"
 #include "lamella/linalg/conjugate_gradient.h"
+#include "lamella/solvers/vortex_particle/solids.h"
 #include "lamella/solvers/vortex_particle/start.h"
 #include "lamella/solvers/vortex_particle/trace.h"
 
@@ -38,12 +39,14 @@ VortexParticleSolver::VortexParticleSolver(const Options& options, const sim::So
       input_(input),
       surfactant_strength_(2.0 * film::thermal_energy(films_of(input).material) / input.films->material.liquid_density),
       viscosity_(film::film_viscosity(input.films->material)),
-      surface_(surface_of(input.films->mesh)),
+      surface_(surface_of(input.films->mesh, options.walls)),
       transfer_(surface_, options.transfer, options.kernel_radius * surface_.longest_edge),
       flow_solver_(surface_),
       diffusion_(surface_),
       compression_(surface_) {
     film::start_surfactant(input_.films->material);
+    if (options_.walls == Walls::kNoSlip && viscosity_ == 0.0)
+        throw InputError("vortex_particle.walls = \"no_slip\" needs material.kinematic_viscosity or surface_viscosity");
     if (!input_.films->events.empty())
         throw InputError("vortex_particle: events are not built yet; take the [[event]] tables out");
     for (const film::Wire& wire : input_.films->wires)
@@ -81,8 +84,10 @@ sim::StepReport VortexParticleSolver::advance(double time_limit) {
     drag(dt, flow);
     drive_circulation(dt, flow);
     const std::vector<double> dilatation = compress(dt, flow);
+    hold_walls(flow);
     diffuse(dt, flow);
     recover_velocity(flow);
+    obey_solids(time_ + dt, flow);
     mesh_to_particles(dt, before, flow, dilatation);
     move_particles(dt, flow);
     velocity_ = std::move(flow.velocity);
@@ -97,7 +102,7 @@ sim::StepReport VortexParticleSolver::advance(double time_limit) {
 double VortexParticleSolver::choose_step(double left) const {
     double fastest = 0.0;
     for (const Vec3& u : velocity_) fastest = std::max(fastest, squared_norm(u));
-    fastest = std::sqrt(fastest);
+    fastest = std::max(std::sqrt(fastest), vortex_particle::fastest(input_.films->solids));
     constexpr double kMostCompression = 0.5;  // |theta| dt [method sheet 14]
     double dt = options_.largest_step;
     if (fastest > 0.0) dt = std::min(dt, options_.courant * surface_.mean_edge / fastest);
@@ -206,6 +211,17 @@ void VortexParticleSolver::factor_reference() {
                            inverse_thickness(surface_, reference_.thickness), mass);
 }
 
+/// Walls without slip hold the film: in the cells at them lies as much circulation as makes the velocity there zero, so
+/// the walls' own stretches of their loops give none and Omega = curl u. Viscosity then spreads it. [method sheet 6.2]
+void VortexParticleSolver::hold_walls(MeshFlow& flow) {
+    if (options_.walls == Walls::kSlip) return;
+    recover_velocity(flow);
+    const std::vector<double> held = curl(surface_, flow.velocity);
+    for (std::size_t v = 0; v < surface_.vertices(); ++v)
+        if (surface_.loop[v] >= 0) flow.circulation[v] = held[v];
+    std::fill(hole_circulation_.begin(), hole_circulation_.end(), 0.0);
+}
+
 /// (M + nu dt K) omega = Omega, and the same for the dilatation; on curved films the vorticity has a source besides,
 /// 2 nu div(K_G grad Psi), without which a bubble could not rotate as a whole for long. [method sheet 5.5]
 void VortexParticleSolver::diffuse(double dt, MeshFlow& flow) {
@@ -229,6 +245,29 @@ void VortexParticleSolver::recover_velocity(MeshFlow& flow) const {
         rotated_gradient(surface_, flow_solver_.stream_function(surface_, flow.circulation, hole_circulation_));
     const std::vector<Vec3> away = gradient(surface_, flow_solver_.potential(surface_, flow.outflow));
     for (std::size_t t = 0; t < away.size(); ++t) flow.velocity[t] += away[t];
+}
+
+/// In a solid the film moves with it. What would give it the solid's velocity goes into the circulation alone, and so
+/// gets around the solid what it cannot compress; sweeps until the film inside obeys to a hundredth. The circulation
+/// that is added sums to zero: what a solid sheds it keeps the opposite of. [method sheet 6.3]
+void VortexParticleSolver::obey_solids(double time, MeshFlow& flow) const {
+    if (input_.films->solids.empty()) return;
+    constexpr int kSweeps = 12;
+    constexpr double kObeyed = 0.01;  // of the fastest solid
+    const Cover cover = cover_of(surface_, input_.films->solids, time);
+    const double enough = kObeyed * vortex_particle::fastest(input_.films->solids);
+    std::vector<Vec3> change(surface_.triangles());
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+        double worst = 0.0;
+        for (std::size_t t = 0; t < change.size(); ++t) {
+            change[t] = cover.share[t] * (cover.velocity[t] - flow.velocity[t]);
+            if (cover.share[t] == 1.0) worst = std::max(worst, norm(change[t]));
+        }
+        if (worst <= enough) return;
+        const std::vector<double> more = closed_curl(surface_, change);
+        for (std::size_t v = 0; v < more.size(); ++v) flow.circulation[v] += more[v];
+        recover_velocity(flow);
+    }
 }
 
 /// Particles take over changes, not values: what the mesh cannot see of them stays [Tao24, eq. 21]. Velocities follow
@@ -274,6 +313,7 @@ void VortexParticleSolver::move_particles(double dt, const MeshFlow& flow) {
     }
     trace(surface_, vertex_velocity(surface_, velocity), dt, particles_);
     bins_ = sort_by_triangle(particles_, surface_.triangles());
+    fill_empty_triangles(surface_, particles_, bins_);
 }
 
 }  // namespace lamella::vortex_particle

@@ -55,7 +55,9 @@ private:
     void drag(double dt, MeshFlow& flow) const;
     void drive_circulation(double dt, MeshFlow& flow);
     std::vector<double> compress(double dt, MeshFlow& flow);
+    void hold_walls(MeshFlow& flow);
     void diffuse(double dt, MeshFlow& flow);
+    void obey_solids(double time, MeshFlow& flow) const;
     void recover_velocity(MeshFlow& flow) const;
     void mesh_to_particles(double dt, const MeshFlow& before, const MeshFlow& after, const std::vector<double>& dilatation);
     void move_particles(double dt, const MeshFlow& flow);
