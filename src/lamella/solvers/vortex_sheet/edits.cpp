@@ -2,7 +2,6 @@
 
 #include "lamella/core/error.h"
 #include "lamella/mesh/quality.h"
-#include "lamella/mesh/smoothing.h"
 #include "lamella/mesh/staged_move.h"
 #include "lamella/mesh/volume.h"
 #include "lamella/mesh/volume_projection.h"
@@ -28,12 +27,10 @@ using mesh::VertexId;
 void VortexSheetSolver::settle_volumes() {
     constexpr double kSettled = 1e-6;  // relative
     constexpr int kMostRounds = 200;
-    constexpr int kEven = 20;  // rounds at least, once begun: triangles become even
     for (int round = 0; round < kMostRounds; ++round) {
         const mesh::VolumeProjection projection = mesh::volume_projection(mesh());
-        if (projection.error < kSettled && (round == 0 || round >= kEven)) break;
-        if (round < kEven) mesh::staged_move(*tracker_, mesh::tangential_smoothing(mesh()));
-        mesh::staged_move(*tracker_, mesh::volume_projection(mesh()).displacement);
+        if (projection.error < kSettled) break;
+        mesh::staged_move(*tracker_, projection.displacement);
         edit_mesh([&] { tracker_->remesh(); });
     }
     events_.clear();
