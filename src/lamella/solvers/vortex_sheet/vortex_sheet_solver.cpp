@@ -4,8 +4,6 @@
 #include "lamella/film/bursting.h"
 #include "lamella/film/tension.h"
 #include "lamella/mesh/area.h"
-#include "lamella/mesh/quality.h"
-#include "lamella/mesh/smoothing.h"
 #include "lamella/mesh/staged_move.h"
 #include "lamella/mesh/volume.h"
 #include "lamella/mesh/volume_projection.h"
@@ -13,14 +11,12 @@
 #include "lamella/solvers/vortex_sheet/impulse.h"
 #include "lamella/solvers/vortex_sheet/point_form.h"
 #include "lamella/solvers/vortex_sheet/step_limit.h"
-#include "lamella/solvers/vortex_sheet/transfer.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 namespace lamella::vortex_sheet {
@@ -62,22 +58,6 @@ void VortexSheetSolver::start(const sim::StartContext&) {
     settle_volumes();
     give_start_velocities();
     apply_events();
-}
-
-/// Clusters of balls begin as cells of up to twice the volume that their gas has, with uneven triangles. They are shrunk
-/// before the air is there: in the course of the run it would be stirred up by that.
-void VortexSheetSolver::settle_volumes() {
-    constexpr double kSettled = 1e-6;  // relative
-    constexpr int kMostRounds = 200;
-    constexpr int kEven = 20;  // rounds at least, once begun: triangles become even
-    for (int round = 0; round < kMostRounds; ++round) {
-        const mesh::VolumeProjection projection = mesh::volume_projection(mesh());
-        if (projection.error < kSettled && (round == 0 || round >= kEven)) break;
-        if (round < kEven) mesh::staged_move(*tracker_, mesh::tangential_smoothing(mesh()));
-        mesh::staged_move(*tracker_, mesh::volume_projection(mesh()).displacement);
-        edit_mesh([&] { tracker_->remesh(); });
-    }
-    events_.clear();
 }
 
 void VortexSheetSolver::take(FoamMesh mesh) {
@@ -171,18 +151,6 @@ sim::StepReport VortexSheetSolver::advance(double time_limit) {
     if (implicit)
         return {.step = dt, .evaluations = evaluations_, .iterations = evaluations_ - 1, .residual = implicit->residual};
     return {.step = dt, .evaluations = 1, .residual = wire_residual_};
-}
-
-/// Triangles that collapse cannot move any more: films hang on them, and what tension asks for turns into circulation
-/// without end.
-/// @throws NumericalError  fixed triangles cannot follow the films
-void VortexSheetSolver::check_triangles() const {
-    constexpr double kSharpest = 1.0;  // degrees
-    const double degrees = mesh::min_angle(mesh()) * 180.0 / std::numbers::pi;
-    if (degrees < kSharpest)
-        throw NumericalError(fmt::format("t = {:.6g} s, step {}: a triangle has an angle of {:.2g} degrees; triangles that "
-                                         "stay as they are cannot follow these films: set vortex_sheet.remeshing = true",
-                                         time_, steps_, degrees));
 }
 
 double VortexSheetSolver::choose_step(double time_limit) const {
@@ -302,88 +270,6 @@ void VortexSheetSolver::move(double dt) {
         displacement[v] = dt * velocity_[v];
     }
     mesh::staged_move(*tracker_, displacement);
-}
-
-void VortexSheetSolver::restore_volumes() {
-    if (!options_.volume_projection) return;
-    constexpr int kRounds = 2;
-    tracker_->move(mesh::volume_projection(mesh(), kRounds).displacement);
-}
-
-/// Without projection volumes are what the motion makes of them: an edit gives back what it took. Regions that came or
-/// went have no volume to go back to.
-void VortexSheetSolver::restore_volumes(const IdVector<RegionId, double>& before,
-                                        const std::vector<mesh::TopologyEvent>& events) {
-    using Kind = mesh::TopologyEvent::Kind;
-    for (const mesh::TopologyEvent& event : events)
-        if (event.kind == Kind::kSplit || event.kind == Kind::kAbsorb || event.kind == Kind::kPop) return;
-    FoamMesh films = mesh();
-    for (const RegionId r : films.regions.ids()) films.regions[r].target_volume = before[r];
-    tracker_->move(mesh::volume_projection(films).displacement);
-}
-
-template <class Edit>
-void VortexSheetSolver::edit_mesh(Edit&& edit) {
-    Transfer transfer(topology_, phi_, velocity_);
-    const IdVector<RegionId, double> volume = mesh::region_volumes(mesh());
-    tracker_->set_resampler(transfer.resampler());
-    edit();
-    tracker_->set_resampler({});
-    const std::vector<mesh::TopologyEvent> events = tracker_->take_events();
-    Transfer::Result result = transfer.finish(mesh(), tracker_->maps(), events);
-    topology_ = std::move(result.topology);
-    phi_ = std::move(result.phi);
-    velocity_ = std::move(result.velocity);
-    IdVector<VertexId, std::int32_t> wire_of(mesh().position.size(), -1);
-    for (const VertexId old : wire_of_.ids())
-        if (tracker_->maps().vertex[old] != mesh::kNoVertex) wire_of[tracker_->maps().vertex[old]] = wire_of_[old];
-    wire_of_ = std::move(wire_of);
-    for (const VertexId v : wire_of_.ids())  // circulation ends where a film does
-        if (topology_.hold[v] == Hold::kRim)
-            for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i) phi_[i] = 0.0;
-    heal(result.edited);
-    if (!options_.volume_projection) restore_volumes(volume, events);
-    for (const mesh::TopologyEvent& event : events)
-        events_.push_back({time_, std::string(mesh::name(event.kind)), event.position,
-                           fmt::format("regions {} {}", index(event.a), index(event.b))});
-}
-
-/// In narrow wedges of air, as between films that have just met, large circulations of two films cancel in all but name:
-/// the flow does not see them. An edit of one film alone would set that energy free, so the jumps around it are evened out.
-/// Such jumps are large beside the velocities; those of a swing are about twice the velocities and left as they are.
-void VortexSheetSolver::heal(const std::vector<VertexId>& edited) {
-    if (edited.empty() || options_.healing == 0) return;
-    constexpr double kHidden = 4.0;  // jump over mean speed: more than any swing of low order has
-    const double most = kHidden * mean_speed();
-    const std::vector<Vec3> strength = face_strengths(mesh(), topology_, phi_);
-    const auto hides_flow = [&](VertexId v) {
-        for (const mesh::Corner& corner : topology_.corners.of(v)) {
-            const auto& [a, b, c] = mesh().faces[corner.face].vertices;
-            const double area = 0.5 * norm(cross(mesh().position[b] - mesh().position[a], mesh().position[c] - mesh().position[a]));
-            if (norm(strength[index(corner.face)]) > most * area) return true;
-        }
-        return false;
-    };
-    std::vector<std::uint8_t> near(mesh().position.size(), 0);
-    for (const VertexId v : edited) near[index(v)] = hides_flow(v) ? 1 : 0;
-    const std::vector<std::uint8_t> inside = near;
-    for (const mesh::Face& face : mesh().faces)
-        for (const VertexId v : face.vertices)
-            if (inside[index(v)] != 0)
-                for (const VertexId w : face.vertices) near[index(w)] = 1;
-    std::vector<std::uint32_t> entries;
-    for (const VertexId v : mesh().position.ids())
-        if (near[index(v)] != 0)
-            for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i)
-                entries.push_back(static_cast<std::uint32_t>(i));
-    even_out(FilmLaplacian(mesh(), topology_), entries, options_.healing, phi_);
-}
-
-/// Root of the mean square velocity of the vertices.
-double VortexSheetSolver::mean_speed() const {
-    double sum = 0.0;
-    for (const Vec3& u : velocity_) sum += squared_norm(u);
-    return std::sqrt(sum / static_cast<double>(velocity_.size()));
 }
 
 /// Without wires nothing outside pushes the air: what remeshing and rounding did to its impulse is taken back.

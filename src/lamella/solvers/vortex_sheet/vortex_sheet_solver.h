@@ -8,6 +8,7 @@
 
 #include "lamella/mesh/tracker.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -68,8 +69,7 @@ private:
     double mean_speed() const;
     void heal(const std::vector<mesh::VertexId>& edited);
     /// Runs an edit of the tracker and lets circulations, velocities and wires follow.
-    template <class Edit>
-    void edit_mesh(Edit&& edit);
+    void edit_mesh(const std::function<void()>& edit);
 
     // Semi-implicit tension, in implicit_tension.cpp.
     void check_implicit() const;
