@@ -1,47 +1,19 @@
 #include "lamella/solvers/vortex_particle/vortex_particle_solver.h"
 
 #include "../../validation/vortex_particle/films.h"
+#include "../sim/state_memory.h"
 
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <numeric>
 
 namespace lamella::vortex_particle {
 namespace {
 
-/// A checkpoint in memory.
-struct Memory : sim::StateWriter, sim::StateReader {
-    std::map<std::string, std::vector<double>, std::less<>> reals;
-    std::map<std::string, std::vector<std::int64_t>, std::less<>> integers;
-
-    void write(std::string_view name, std::span<const double> v) override {
-        reals[std::string(name)].assign(v.begin(), v.end());
-    }
-    void write(std::string_view name, std::span<const std::int64_t> v) override {
-        integers[std::string(name)].assign(v.begin(), v.end());
-    }
-    void write(std::string_view name, std::span<const std::int32_t> v) override {
-        integers[std::string(name)].assign(v.begin(), v.end());
-    }
-    template <class From, class To>
-    static void fetch(const From& from, std::string_view name, std::size_t count, To& values) {
-        const auto it = from.find(name);
-        if (it == from.end() || it->second.size() != count) throw InputError(std::string(name));
-        values.resize(count);
-        for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<typename To::value_type>(it->second[i]);
-    }
-    void read(std::string_view name, std::size_t count, std::vector<double>& v) override { fetch(reals, name, count, v); }
-    void read(std::string_view name, std::size_t count, std::vector<std::int64_t>& v) override {
-        fetch(integers, name, count, v);
-    }
-    void read(std::string_view name, std::size_t count, std::vector<std::int32_t>& v) override {
-        fetch(integers, name, count, v);
-    }
-};
+using Memory = test::StateMemory;
 
 /// A curved film with a hole, everything on: gravity, uneven liquid, viscosity, drag, a flow around the hole.
 constexpr const char* kBusy = R"(
