@@ -98,6 +98,19 @@ RC_GTEST_PROP(AnyOperations, LeaveAMeshSoundAndKeepItsGas, ()) {
     }
 }
 
+// Random motion of wires, which nothing remeshes, makes films needles that are only as thick as a motion leaves them.
+TEST(CrumpledWires, HoldSoundFilms) {
+    for (int shape = 0; shape < 3; ++shape)
+        for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+            Tracker tracker(start_mesh(shape, 1), {.edge_length = kEdge});
+            for (std::uint64_t step = 0; step < 90; ++step) {
+                const std::string what = operate(tracker, random_bits(seed, RandomStream::kMeshJitter, 2, step).word[0] >> 12);
+                ASSERT_EQ(faults(tracker.mesh()), std::vector<std::string>{})
+                    << "shape " << shape << ", seed " << seed << ", step " << step << ", " << what;
+            }
+        }
+}
+
 RC_GTEST_PROP(Resampling, CoversEveryVertexThatIsNewOrElsewhere, ()) {
     // A value carried along by the callback and the maps alone reaches every vertex.
     Tracker tracker(start_mesh(*rc::gen::inRange(1, 6), 3), {.edge_length = kEdge});

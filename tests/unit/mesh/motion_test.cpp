@@ -62,6 +62,25 @@ TEST(MotionLimit, LetsNothingCross) {
     EXPECT_EQ(faults(mesh.mesh()), std::vector<std::string>{});
 }
 
+TEST(MotionLimit, LeavesDistancesAboveRounding) {
+    FoamMesh films;
+    films.regions.resize(3);
+    for (const double z : {-0.1, 0.1}) {
+        const VertexId a = films.add_vertex({{0, 0, z}}), b = films.add_vertex({{0.4, 0, z}}), c = films.add_vertex({{0, 0.4, z}});
+        films.add_face(a, b, c, RegionId{z < 0.0 ? 1U : 0U}, RegionId{z < 0.0 ? 0U : 2U});
+    }
+    EditMesh mesh(films, kEdge);
+    MotionLimit limit;
+    for (int step = 0; step < 40; ++step) {
+        IdVector<VertexId, Vec3> together(6);
+        for (const VertexId v : together.ids()) together[v] = {{0.0, 0.0, mesh.at(v)[2] < 0.0 ? 0.05 : -0.05}};
+        move(mesh, limit, together, {});
+    }
+    const double gap = mesh.at(VertexId{3})[2] - mesh.at(VertexId{0})[2];
+    EXPECT_GT(gap, 0.9e-4 * 0.15 * kEdge);
+    EXPECT_LT(gap, 1.1e-4 * 0.15 * kEdge);
+}
+
 TEST(FacePairs, AreThoseWhoseBoxesOverlap) {
     const EditMesh mesh = cluster();
     std::vector<FacePairs::Item> items;

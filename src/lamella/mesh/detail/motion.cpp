@@ -12,6 +12,7 @@ namespace lamella::mesh::detail {
 namespace {
 
 constexpr double kTogether = 0.9;
+constexpr double kFloor = 1e-4;  // of the longest step
 
 /// Whether the boxes of two sets of points come closer than `reach` along every axis. It spares most exact distances: of
 /// the primitives of two faces whose boxes meet nine in ten are farther apart than they move.
@@ -50,7 +51,11 @@ double together(const Pair& pair, const Lengths& length) {
     return pair.first == 1 ? a + std::max({b, c, d}) : std::max(a, b) + std::max(c, d);
 }
 
-bool in_danger(double way, double squared_distance) { return way * way > kTogether * kTogether * squared_distance; }
+/// How far two primitives may move together [m]. At `floor` they come no nearer: where wires crumple a film, step after step
+/// would take its share of the distance until the rest is lost in rounding.
+double room(double squared_distance, double floor) {
+    return kTogether * std::max(std::sqrt(squared_distance) - floor, 0.0);
+}
 
 /// Each vertex and each edge belongs to the lowest face that has it, so that every pair is looked at once.
 struct Owned {
@@ -60,7 +65,7 @@ struct Owned {
 /// Which pairs are in danger when the vertices go as far as `length`.
 class DangerousPairs {
 public:
-    DangerousPairs(const EditMesh& mesh, const Lengths& length);
+    DangerousPairs(const EditMesh& mesh, const Lengths& length, double floor);
     /// Appends those of two faces.
     void of_faces(FaceId f, FaceId g, std::vector<Pair>& found) const;
     /// Every face in a box that meets the box of each face it could reach.
@@ -70,15 +75,17 @@ private:
     double most(const Face& face) const {
         return std::max({length_[face.vertices[0]], length_[face.vertices[1]], length_[face.vertices[2]]});
     }
+    bool in_danger(const Pair& pair, double way) const { return way > room(squared_distance(mesh_, pair), floor_); }
     void vertices_against_face(FaceId f, FaceId g, std::vector<Pair>& found) const;
 
     const EditMesh& mesh_;
     const Lengths& length_;
+    double floor_;
     IdVector<FaceId, Owned> owned_;
 };
 
-DangerousPairs::DangerousPairs(const EditMesh& mesh, const Lengths& length)
-    : mesh_(mesh), length_(length), owned_(mesh.mesh().faces.size()) {
+DangerousPairs::DangerousPairs(const EditMesh& mesh, const Lengths& length, double floor)
+    : mesh_(mesh), length_(length), floor_(floor), owned_(mesh.mesh().faces.size()) {
     parallel_for(owned_.size(), [&](std::size_t i) {
         const FaceId f = static_cast<FaceId>(i);
         const auto& u = mesh_.face(f).vertices;
@@ -102,7 +109,7 @@ void DangerousPairs::vertices_against_face(FaceId f, FaceId g, std::vector<Pair>
         if (!((owned_[f].vertices >> k) & 1U) || face.has(v)) continue;
         const Pair pair{{v, face.vertices[0], face.vertices[1], face.vertices[2]}, 1};
         const double way = together(pair, length_);
-        if (boxes_near<1, 3>({mesh_.at(v)}, t, way / kTogether) && in_danger(way, squared_distance(mesh_, pair)))
+        if (boxes_near<1, 3>({mesh_.at(v)}, t, way / kTogether + floor_) && in_danger(pair, way))
             found.push_back(pair);
     }
 }
@@ -121,8 +128,8 @@ void DangerousPairs::of_faces(FaceId f, FaceId g, std::vector<Pair>& found) cons
             if (!((owned_[g].edges >> j) & 1U) || a == c || a == d || b == c || b == d) continue;
             const Pair pair{{a, b, c, d}, 2};
             const double way = together(pair, length_);
-            if (boxes_near<2, 2>({mesh_.at(a), mesh_.at(b)}, {mesh_.at(c), mesh_.at(d)}, way / kTogether) &&
-                in_danger(way, squared_distance(mesh_, pair)))
+            if (boxes_near<2, 2>({mesh_.at(a), mesh_.at(b)}, {mesh_.at(c), mesh_.at(d)}, way / kTogether + floor_) &&
+                in_danger(pair, way))
                 found.push_back(pair);
         }
     }
@@ -133,26 +140,26 @@ std::vector<FacePairs::Item> DangerousPairs::boxes() const {
     std::vector<FacePairs::Item> items(faces);
     parallel_for(faces, [&](std::size_t i) {
         const FaceId f = static_cast<FaceId>(i);
-        items[i] = {f, mesh_.box(f).inflated(most(mesh_.face(f)) / kTogether)};
+        items[i] = {f, mesh_.box(f).inflated(most(mesh_.face(f)) / kTogether + 0.5 * floor_)};
     });
     return items;
 }
 
-std::vector<Pair> dangerous_pairs(const EditMesh& mesh, const Lengths& length) {
-    const DangerousPairs dangerous(mesh, length);
+std::vector<Pair> dangerous_pairs(const EditMesh& mesh, const Lengths& length, double floor) {
+    const DangerousPairs dangerous(mesh, length, floor);
     return FacePairs(dangerous.boxes()).collect<Pair>([&](FaceId f, FaceId g, std::vector<Pair>& found) {
         dangerous.of_faces(f, g, found);
     });
 }
 
 /// How far each vertex may go of its `length`.
-Lengths held_by(const std::vector<Pair>& pairs, const EditMesh& mesh, const Lengths& length) {
-    std::vector<double> squared(pairs.size());
-    parallel_for(pairs.size(), [&](std::size_t i) { squared[i] = squared_distance(mesh, pairs[i]); });
+Lengths held_by(const std::vector<Pair>& pairs, const EditMesh& mesh, const Lengths& length, double floor) {
+    std::vector<double> rooms(pairs.size());
+    parallel_for(pairs.size(), [&](std::size_t i) { rooms[i] = room(squared_distance(mesh, pairs[i]), floor); });
     Lengths allowed = length;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        if (!in_danger(together(pairs[i], length), squared[i])) continue;
-        const double half = 0.5 * kTogether * std::sqrt(squared[i]);
+        if (together(pairs[i], length) <= rooms[i]) continue;
+        const double half = 0.5 * rooms[i];
         for (const VertexId v : pairs[i].vertex) allowed[v] = std::min(allowed[v], half);
     }
     return allowed;
@@ -182,15 +189,16 @@ std::size_t MotionLimit::apply(const EditMesh& mesh,
         }
         length[v] = d;
     }
+    const double floor = kFloor * longest;
     if (!within_reach(length)) {
         constexpr double kRounding = 1e-9;  // of places and lengths, far above it
         reach_ = length;
         for (const VertexId v : later.ids()) reach_[v] += later[v];
         for (double& d : reach_) d *= 1.0 + 2.0 * kRounding;
-        pairs_ = dangerous_pairs(mesh, reach_);
+        pairs_ = dangerous_pairs(mesh, reach_, floor);
         for (double& d : reach_) d /= 1.0 + kRounding;
     }
-    const Lengths allowed = held_by(pairs_, mesh, length);
+    const Lengths allowed = held_by(pairs_, mesh, length, floor);
     for (const VertexId v : displacement.ids()) {
         if (allowed[v] < length[v]) {
             displacement[v] *= allowed[v] / length[v];

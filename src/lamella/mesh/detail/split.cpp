@@ -23,9 +23,13 @@ std::vector<CandidateEdge> long_edges(const Workbench& bench) {
         std::greater<>());
 }
 
-/// Every face of the edge becomes two. No volume changes and nothing can intersect: no checks are needed.
-void split(Workbench& bench, VertexId v, VertexId w) {
+/// Every face of the edge becomes two. No volume changes and nothing can intersect, but for the rounding of the middle: a face so
+/// thin that it would feel that is left as it is. @returns whether it was done
+bool split(Workbench& bench, VertexId v, VertexId w) {
+    constexpr double kThinnest = 1e9;  // length over height
     EditMesh& mesh = bench.mesh;
+    for (const FaceId f : mesh.faces_on(v, w))
+        if (!(sharpest_cot(mesh.corners(f)) < kThinnest)) return false;
     mesh.begin();
     const VertexId middle = mesh.add_vertex(0.5 * (mesh.at(v) + mesh.at(w)), false);
     for (const FaceId f : mesh.faces_on(v, w)) {
@@ -41,6 +45,7 @@ void split(Workbench& bench, VertexId v, VertexId w) {
     mesh.commit();
     bench.resample(middle, {v, w}, {0.5, 0.5});
     ++bench.report.splits;
+    return true;
 }
 
 }  // namespace
@@ -51,8 +56,7 @@ void split_long_edges(Workbench& bench) {
         bool any = false;
         for (const CandidateEdge& edge : long_edges(bench)) {
             if (bench.mesh.faces_on(edge.v, edge.w).empty()) continue;
-            split(bench, edge.v, edge.w);
-            any = true;
+            any = split(bench, edge.v, edge.w) || any;
         }
         if (!any) return;
     }
