@@ -61,6 +61,7 @@ void read_column(sim::StateReader& in, const std::string& name, std::size_t coun
 }  // namespace
 
 void VortexParticleSolver::save(sim::StateWriter& out) const {
+    if (moving_) save_moving(out);
     out.write_value("vertices", static_cast<std::int64_t>(surface_.vertices()));
     out.write_value("triangles", static_cast<std::int64_t>(surface_.triangles()));
     out.write_value("particles", static_cast<std::int64_t>(particles_.size()));
@@ -81,6 +82,7 @@ void VortexParticleSolver::save(sim::StateWriter& out) const {
 }
 
 void VortexParticleSolver::load(sim::StateReader& in) {
+    if (options_.moving) load_moving(in);
     const auto expect = [&](const char* name, std::size_t mine) {
         if (in.read_integer(name) != static_cast<std::int64_t>(mine))
             throw InputError(fmt::format("the checkpoint's {} are not those of this scene's film", name));

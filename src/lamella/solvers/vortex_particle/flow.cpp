@@ -1,12 +1,16 @@
 #include "lamella/solvers/vortex_particle/flow.h"
 
 #include "lamella/core/error.h"
+#include "lamella/linalg/conjugate_gradient.h"
 
 #include <algorithm>
 #include <numeric>
 
 namespace lamella::vortex_particle {
 namespace {
+
+constexpr double kLaggingTolerance = 1e-10;
+constexpr int kMostIterations = 200;
 
 /// Numbers the unknowns: one per vertex, but none where `fixed`.
 template <class Fixed>
@@ -54,21 +58,61 @@ FlowSolver::Poisson::Poisson(const Surface& s, std::vector<int> unknown) : matri
     if (matrix.size() == 0) return;
     matrix.assemble(s, 1.0, {}, {});
     factors.analyze(matrix.matrix());
+    factorize(s);
+}
+
+void FlowSolver::Poisson::factorize(const Surface& s) {
+    if (matrix.size() == 0) return;
+    matrix.assemble(s, 1.0, {}, {});
     if (!factors.factorize(matrix.matrix())) throw NumericalError("the film's Poisson equation is singular");
 }
 
-/// Adds up what belongs to one unknown, solves, and gives each vertex its unknown's value.
-std::vector<double> FlowSolver::Poisson::solve(const Surface& s, std::vector<double> right) const {
+/// Adds up what belongs to one unknown.
+std::vector<double> FlowSolver::Poisson::sums(std::span<const double> at_vertices) const {
     std::vector<double> x(matrix.size(), 0.0);
-    for (std::size_t v = 0; v < s.vertices(); ++v)
-        if (matrix.unknown(v) >= 0) x[static_cast<std::size_t>(matrix.unknown(v))] += right[v];
-    if (!x.empty()) factors.solve(x);
-    for (std::size_t v = 0; v < s.vertices(); ++v)
-        right[v] = matrix.unknown(v) >= 0 ? x[static_cast<std::size_t>(matrix.unknown(v))] : 0.0;
-    return right;
+    for (std::size_t v = 0; v < at_vertices.size(); ++v)
+        if (matrix.unknown(v) >= 0) x[static_cast<std::size_t>(matrix.unknown(v))] += at_vertices[v];
+    return x;
+}
+
+/// Gives each vertex its unknown's value.
+std::vector<double> FlowSolver::Poisson::spread(const std::vector<double>& x) const {
+    std::vector<double> at_vertices(matrix.vertices(), 0.0);
+    for (std::size_t v = 0; v < at_vertices.size(); ++v)
+        if (matrix.unknown(v) >= 0) at_vertices[v] = x[static_cast<std::size_t>(matrix.unknown(v))];
+    return at_vertices;
+}
+
+std::vector<double> FlowSolver::Poisson::solve(const Surface& s, const std::vector<double>& right, bool lagging,
+                                               int& iterations) const {
+    std::vector<double> x = sums(right);
+    if (x.empty()) return spread(x);
+    if (!lagging) {
+        factors.solve(x);
+        return spread(x);
+    }
+    const std::vector<double> b = x;
+    factors.solve(x);
+    const auto apply = [&](const std::vector<double>& p, std::vector<double>& y) {
+        std::vector<double> image(s.vertices(), 0.0);
+        add_stiffness(s, 1.0, {}, spread(p), image);
+        y = sums(image);
+    };
+    const auto precondition = [&](const std::vector<double>& p, std::vector<double>& y) {
+        y = p;
+        factors.solve(y);
+    };
+    const auto done = linalg::preconditioned_conjugate_gradient(apply, precondition, b, x, kLaggingTolerance, kMostIterations);
+    iterations = std::max(iterations, done.iterations);
+    return spread(x);
 }
 
 FlowSolver::FlowSolver(const Surface& s) : stream_(s, stream_unknowns(s)), potential_(s, potential_unknowns(s)) {}
+
+void FlowSolver::factorize(const Surface& s) {
+    stream_.factorize(s);
+    potential_.factorize(s);
+}
 
 std::vector<double> FlowSolver::stream_function(const Surface& s,
                                                 std::span<const double> circulation,
@@ -82,13 +126,13 @@ std::vector<double> FlowSolver::stream_function(const Surface& s,
         met[static_cast<std::size_t>(s.loop[v])] = 1;
         right[v] -= hole_circulation[static_cast<std::size_t>(s.loop[v])];
     }
-    return stream_.solve(s, std::move(right));
+    return stream_.solve(s, right, lagging_, iterations_);
 }
 
 std::vector<double> FlowSolver::potential(const Surface& s, std::span<const double> outflow) const {
     std::vector<double> right(outflow.begin(), outflow.end());
     for (double& value : right) value = -value;
-    return potential_.solve(s, std::move(right));
+    return potential_.solve(s, right, lagging_, iterations_);
 }
 
 namespace {
@@ -110,6 +154,22 @@ void ShiftedStiffness::factorize(const Surface& s, double scale, std::span<const
     matrix_.assemble(s, scale, weight, mass);
     if (!factors_.factorize(matrix_.matrix()))
         throw NumericalError("vortex_particle: a diffusion matrix of the film is singular");
+}
+
+int ShiftedStiffness::solve_lagging(const Surface& s, double scale, std::span<const double> weight,
+                                    std::span<const double> mass, std::vector<double>& x) const {
+    const std::vector<double> b = x;
+    factors_.solve(x);
+    const auto apply = [&](const std::vector<double>& p, std::vector<double>& y) {
+        y.resize(p.size());
+        for (std::size_t v = 0; v < p.size(); ++v) y[v] = mass[v] * p[v];
+        add_stiffness(s, scale, weight, p, y);
+    };
+    const auto precondition = [&](const std::vector<double>& p, std::vector<double>& y) {
+        y = p;
+        factors_.solve(y);
+    };
+    return linalg::preconditioned_conjugate_gradient(apply, precondition, b, x, kLaggingTolerance, kMostIterations).iterations;
 }
 
 }  // namespace lamella::vortex_particle

@@ -7,6 +7,7 @@
 #include "lamella/solvers/vortex_particle/surface.h"
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lamella::vortex_particle {
@@ -22,6 +23,13 @@ class FlowSolver {
 public:
     explicit FlowSolver(const Surface& s);
 
+    /// Factors the equations of the film as it lies now. Where it has moved since, the factors only precondition an
+    /// iteration: `lagging` says that it may have. [method sheet 15.1]
+    void factorize(const Surface& s);
+    void set_lagging(bool lagging) { lagging_ = lagging; }
+    /// Most iterations of an equation since the last call.
+    int take_iterations() const { return std::exchange(iterations_, 0); }
+
     /// @param circulation       Omega_i [m^2/s]; sums to zero on a component without walls
     /// @param hole_circulation  one per loop of the surface, counterclockwise around the hole seen from the tip of the
     ///                          normal; outer loops are not read
@@ -36,9 +44,16 @@ private:
         linalg::Ldlt factors;
 
         Poisson(const Surface& s, std::vector<int> unknown);
-        std::vector<double> solve(const Surface& s, std::vector<double> right) const;
+        void factorize(const Surface& s);
+        std::vector<double> solve(const Surface& s, const std::vector<double>& right, bool lagging, int& iterations) const;
+
+    private:
+        std::vector<double> sums(std::span<const double> at_vertices) const;
+        std::vector<double> spread(const std::vector<double>& x) const;
     };
     Poisson stream_, potential_;
+    bool lagging_ = false;
+    mutable int iterations_ = 0;
 };
 
 /// (diag(mass) + scale K_w) x = b with a factorization that is kept while mass, scale and weights stay the same.
@@ -49,6 +64,10 @@ public:
     /// @throws NumericalError  the matrix is not definite
     void factorize(const Surface& s, double scale, std::span<const double> weight, std::span<const double> mass);
     void solve(std::span<double> x) const { factors_.solve(x); }
+    /// The same where film, mass, scale or weights are others by now than those that were factored.
+    /// @returns  iterations
+    int solve_lagging(const Surface& s, double scale, std::span<const double> weight, std::span<const double> mass,
+                      std::vector<double>& x) const;
 
 private:
     VertexMatrix matrix_;

@@ -22,6 +22,21 @@ sim::Field vectors(std::string name, std::string unit, const std::vector<Vec3>& 
     return field;
 }
 
+/// Values of the vertices of the films from those of their leaves: the mean, weighted with area.
+template <class Value>
+std::vector<Value> of_films(const Surface& s, std::size_t vertices, const std::vector<Value>& leaves) {
+    if (vertices == s.vertices()) return leaves;
+    std::vector<Value> mean(vertices, Value{});
+    std::vector<double> area(vertices, 0.0);
+    for (std::size_t v = 0; v < s.vertices(); ++v) {
+        mean[s.site[v]] += s.vertex_area[v] * leaves[v];
+        area[s.site[v]] += s.vertex_area[v];
+    }
+    for (std::size_t v = 0; v < vertices; ++v)
+        if (area[v] > 0.0) mean[v] *= 1.0 / area[v];
+    return mean;
+}
+
 }  // namespace
 
 const MeshFlow& VortexParticleSolver::observed() const {
@@ -47,23 +62,30 @@ sim::Frame VortexParticleSolver::frame() const {
     frame.solver = "vortex_particle";
     frame.time = time_;
     frame.step = steps_;
-    frame.surface = sim::film_surface(input_.films->mesh);
-    std::vector<double> vorticity = flow.circulation, dilatation = flow.outflow;
+    frame.surface = sim::film_surface(films());
+    std::vector<double> vorticity = flow.circulation, dilatation = flow.outflow, thickness = flow.thickness;
     for (std::size_t v = 0; v < surface_.vertices(); ++v) {
         vorticity[v] /= surface_.vertex_area[v];
         dilatation[v] /= surface_.vertex_area[v];
+        thickness[v] /= surface_.vertex_share[v];
     }
+    const std::size_t vertices = films().position.size();
     auto& fields = frame.surface.vertex_fields;
-    fields.push_back({"thickness", "m", 1, false, flow.thickness});
-    fields.push_back({"vorticity", "1/s", 1, false, std::move(vorticity)});
-    fields.push_back({"surfactant_concentration", "mol/m^2", 1, false, flow.surfactant});
-    fields.push_back({"dilatation", "1/s", 1, false, std::move(dilatation)});
-    if (!input_.films->solids.empty())
-        frame.surface.face_fields.push_back(
-            {"solid", "-", 1, false, cover_of(surface_, input_.films->solids, time_).share});
-    fields.push_back(vectors("velocity", "m/s", vertex_velocity(surface_, flow.velocity)));
+    fields.push_back({"thickness", "m", 1, false, of_films(surface_, vertices, thickness)});
+    fields.push_back({"vorticity", "1/s", 1, false, of_films(surface_, vertices, vorticity)});
+    fields.push_back({"surfactant_concentration", "mol/m^2", 1, false, of_films(surface_, vertices, flow.surfactant)});
+    fields.push_back({"dilatation", "1/s", 1, false, of_films(surface_, vertices, dilatation)});
+    if (!input_.films->solids.empty()) {
+        const Cover cover = cover_of(surface_, input_.films->solids, time_);
+        std::vector<double> solid(films().faces.size(), 0.0);
+        for (std::size_t t = 0; t < surface_.triangles(); ++t) solid[surface_.film[t]] = cover.share[t];
+        frame.surface.face_fields.push_back({"solid", "-", 1, false, std::move(solid)});
+    }
+    std::vector<Vec3> velocity = of_films(surface_, vertices, vertex_velocity(surface_, flow.velocity));
+    add_film_motion(velocity);
+    fields.push_back(vectors("velocity", "m/s", velocity));
     if (options_.particles_in_frames) {
-        std::vector<double> thickness(particles_.size());
+        thickness.resize(particles_.size());
         for (std::size_t p = 0; p < particles_.size(); ++p) {
             frame.points.position.push_back(surface_.point(particles_.triangle[p], particles_.place[p]));
             thickness[p] = particles_.volume[p] / particles_.area[p];
@@ -84,7 +106,7 @@ std::vector<sim::Scalar> VortexParticleSolver::scalars() const {
     Vec3 impulse;
     for (std::size_t v = 0; v < surface_.vertices(); ++v) {
         const double gamma = flow.surfactant[v], area = surface_.vertex_area[v], omega = flow.circulation[v] / area;
-        elastic += 2.0 * rt * area * (gamma * std::log(gamma / rest) - gamma + rest);
+        elastic += 2.0 * rt * surface_.vertex_share[v] * area * (gamma * std::log(gamma / rest) - gamma + rest);
         on_mesh += flow.thickness[v] * area;
         enstrophy += 0.5 * omega * omega * area;
         impulse += flow.circulation[v] * surface_.position[v];
@@ -102,7 +124,7 @@ std::vector<sim::Scalar> VortexParticleSolver::scalars() const {
         fewest = std::min(fewest, bins_[t + 1] - bins_[t]);
         most = std::max(most, bins_[t + 1] - bins_[t]);
     }
-    return {
+    std::vector<sim::Scalar> all{
         {"energy_kinetic", "J", kinetic, "of the liquid along the film"},
         {"energy_elastic", "J", elastic, "of the surfactant, above that of an even film of material.surfactant"},
         {"energy_gravity", "J", gravity, "of the liquid, above the origin"},
@@ -123,6 +145,8 @@ std::vector<sim::Scalar> VortexParticleSolver::scalars() const {
         {"fewest_in_triangle", "-", static_cast<double>(fewest), "particles"},
         {"most_in_triangle", "-", static_cast<double>(most), "particles"},
     };
+    if (moving_) add_film_scalars(all);
+    return all;
 }
 
 std::vector<sim::Scalar> VortexParticleSolver::characteristic_numbers() const {

@@ -75,6 +75,7 @@ public:
 
     const linalg::SymmetricMatrix& matrix() const { return matrix_; }
     std::size_t size() const { return matrix_.size(); }
+    std::size_t vertices() const { return unknown_.size(); }
     int unknown(std::size_t v) const { return unknown_[v]; }
 
 private:

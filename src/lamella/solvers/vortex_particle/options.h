@@ -14,6 +14,7 @@ enum class Viscosity {
     kSurface,  ///< that of a curved fluid sheet: a rigid rotation of a bubble is not damped
     kLaplace,  ///< diffusion of the vorticity, as published
 };
+enum class Junction { kLeaves, kSheets };
 enum class ThicknessProfile { kUniform, kLinear, kStep, kCosine };
 enum class SurfactantProfile {
     kUniform,
@@ -53,6 +54,7 @@ struct StartOptions {
 struct NoiseOptions {
     double thickness = 0.0;
     double surfactant = 0.0;
+    double shape = 0.0;
     double frequency = 0.0;
     int octaves = 1;
 
@@ -60,8 +62,24 @@ struct NoiseOptions {
     void visit(Visitor&& option) {
         option("thickness", thickness, sim::between(0.0, 0.9), {"amplitude, relative"});
         option("surfactant", surfactant, sim::between(0.0, 0.9), {"amplitude, relative"});
+        option("shape", shape, sim::at_least(0.0), {"of films that move: height of the noise along the normal", "length"});
         option("frequency", frequency, sim::at_least(0.0), {"0: eight over the square root of the film's area", "1/length"});
         option("octaves", octaves, sim::between(1, 10), {"each of twice the frequency and half the amplitude"});
+    }
+};
+
+/// How films move.
+struct MotionOptions {
+    bool added_air = false;
+    bool remeshing = true;
+    double damping = 0.0;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("added_air", added_air,
+               {"true: the air that films push counts as inertia, as it does around spheres and planes"});
+        option("remeshing", remeshing, {"true: triangles are kept even as films deform"});
+        option("damping", damping, sim::at_least(0.0), {"rate at which motions along the normal die out", "1/time"});
     }
 };
 
@@ -78,9 +96,13 @@ struct Options {
     double largest_step = 0.01;
     double courant = 1.0;
     double area_relaxation = 0.0;
+    Junction junction = Junction::kLeaves;
+    double leaf_exchange = 10.0;
     double velocity_blend = 2.0;
     double solve_tolerance = 1e-10;
     bool particles_in_frames = false;
+    bool moving = false;
+    MotionOptions motion;
     StartOptions start;
     NoiseOptions noise;
 
@@ -105,11 +127,20 @@ struct Options {
         option("courant", courant, sim::more_than(0.0), {"edges that the fastest particle moves in a step, at most"});
         option("area_relaxation", area_relaxation, sim::at_least(0.0),
                {"rate at which particles' areas follow the room that they have; measured: 0 is best", "1/time"});
+        option("junction", junction,
+               sim::choices<Junction>({{"leaves", Junction::kLeaves}, {"sheets", Junction::kSheets}}),
+               {"films that bound two bubbles; leaves: each bubble has half of them, which flows on its own; sheets: one"
+                " flow per film (not built yet)"});
+        option("leaf_exchange", leaf_exchange, sim::at_least(0.0),
+               {"rate at which a leaf gives liquid and surfactant to the other one of its film where that has none; the"
+                " paper: 0.1 per step", "1/time", "[Tao24]"});
         option("velocity_blend", velocity_blend, sim::at_least(0.0),
                {"rate at which particles' velocity follows that of the mesh", "1/time"});
         option("solve_tolerance", solve_tolerance, sim::strictly_between(0.0, 1e-2),
                {"residual of the surfactant's equation, relative"});
         option("particles_in_frames", particles_in_frames, {"true: frames show the particles too"});
+        option("moving", moving, {"true: tension, gas and weight move films; false: they stand still"});
+        option.group("motion", motion, "films that move");
         option.group("start", start, "thickness and surfactant at the start");
         option.group("noise", noise, "smooth noise on them");
     }

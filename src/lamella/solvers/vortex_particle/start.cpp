@@ -97,7 +97,7 @@ std::vector<double> balanced_surfactant(const Surface& s, const film::Problem& f
     std::vector<Vec3> weight(s.triangles());
     for (std::size_t t = 0; t < s.triangles(); ++t) {
         double thickness = 0.0;
-        for (const std::uint32_t v : s.corner[t]) thickness += volume[v] / area[v] / 3.0;
+        for (const std::uint32_t v : s.corner[t]) thickness += volume[v] / (3.0 * s.vertex_share[v] * area[v]);
         const Vec3& g = films.material.gravity;
         weight[t] = thickness * (g - dot(g, s.normal[t]) * s.normal[t]);
     }
@@ -200,10 +200,10 @@ Particles start_particles(const Surface& s,
     for (std::size_t p = 0; p < particles.size(); ++p) {
         const std::size_t t = particles.triangle[p];
         const Vec3 x = s.point(t, particles.place[p]);
-        const double profile = thickness_at(height, films, options.start, x);
-        particles.volume[p] = particles.area[p] * profile * noisy(options.noise.thickness, x, 0);
+        const double profile = thickness_at(height, films, options.start, x), share_of_film = s.share[t];
+        particles.volume[p] = share_of_film * particles.area[p] * profile * noisy(options.noise.thickness, x, 0);
         const double share = options.start.surfactant == SurfactantProfile::kProportional
-                                 ? particles.volume[p] / particles.area[p] / films.material.thickness
+                                 ? particles.volume[p] / (share_of_film * particles.area[p]) / films.material.thickness
                                  : 1.0;
         particles.amount[p] = particles.area[p] * surfactant * share * noisy(options.noise.surfactant, x, 1);
         particles.circulation[p] = particles.area[p] * vorticity(films.vortices, x, s.normal[t]);

@@ -1,7 +1,7 @@
 #include "lamella/solvers/vortex_particle/surface.h"
 
 #include "lamella/core/error.h"
-#include "lamella/mesh/edge_faces.h"
+#include "lamella/solvers/vortex_particle/leaves.h"
 
 #include <fmt/format.h>
 
@@ -28,23 +28,6 @@ public:
 private:
     std::vector<std::uint32_t> parent_;
 };
-
-void find_neighbors(const mesh::FoamMesh& mesh, Surface& s) {
-    s.neighbor.assign(s.triangles(), {kNoNeighbor, kNoNeighbor, kNoNeighbor});
-    const mesh::EdgeFaces edges = mesh::edge_faces(mesh);
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-        const auto uses = edges.of(e);
-        if (uses.size() < 2) continue;
-        if (uses.size() > 2)
-            throw InputError("vortex_particle: films that meet in a triple line are not built yet; use films without "
-                             "junctions");
-        if (uses[0].forward == uses[1].forward)
-            throw InputError("vortex_particle: neighboring triangles of the film face opposite ways; turn its faces to "
-                             "one side");
-        for (const std::size_t k : {0U, 1U})
-            s.neighbor[index(uses[k].face)][uses[k].opposite] = static_cast<std::int32_t>(index(uses[1 - k].face));
-    }
-}
 
 void find_rings(Surface& s) {
     s.ring_start.assign(s.vertices() + 1, 0);
@@ -100,16 +83,19 @@ void find_components_and_loops(Surface& s) {
         if (l < s.loops.size()) s.loops[l].outer = true;
 }
 
-void measure(Surface& s) {
+/// @returns  a triangle without area, or their number
+std::size_t measure(Surface& s) {
+    s.total_area = s.longest_edge = 0.0;
     s.normal.resize(s.triangles());
     s.area.resize(s.triangles());
     s.hat_slope.resize(s.triangles());
     s.vertex_area.assign(s.vertices(), 0.0);
+    s.vertex_share.assign(s.vertices(), 0.0);
     s.vertex_normal.assign(s.vertices(), {});
     for (std::size_t t = 0; t < s.triangles(); ++t) {
         const Vec3 twice = cross(s.edge(t, 2), s.edge(t, 0));
         const double length = norm(twice);
-        if (!(length > 0.0)) throw InputError(fmt::format("vortex_particle: triangle {} of the film has no area", t));
+        if (!(length > 0.0)) return t;
         s.area[t] = 0.5 * length;
         s.normal[t] = twice / length;
         s.total_area += s.area[t];
@@ -117,11 +103,17 @@ void measure(Surface& s) {
             s.hat_slope[t][k] = cross(s.normal[t], s.edge(t, k)) / length;
             s.longest_edge = std::max(s.longest_edge, norm(s.edge(t, k)));
             s.vertex_area[s.corner[t][k]] += s.area[t] / 3.0;
+            s.vertex_share[s.corner[t][k]] += s.share[t] * s.area[t] / 3.0;
             s.vertex_normal[s.corner[t][k]] += twice;
         }
     }
     for (Vec3& n : s.vertex_normal) n *= 1.0 / norm(n);
+    for (std::size_t v = 0; v < s.vertices(); ++v) {
+        s.vertex_share[v] /= s.vertex_area[v];
+        if (std::abs(s.vertex_share[v] - 1.0) < 1e-12) s.vertex_share[v] = 1.0;  // a sum of its own parts but for rounding
+    }
     s.mean_edge = std::sqrt(4.0 / std::sqrt(3.0) * s.total_area / static_cast<double>(s.triangles()));
+    return s.triangles();
 }
 
 void find_walls(Surface& s, Walls walls) {
@@ -150,18 +142,21 @@ void find_walls(Surface& s, Walls walls) {
 Surface surface_of(const mesh::FoamMesh& mesh, Walls walls) {
     if (mesh.periodic()) throw InputError("vortex_particle: films in a periodic box are for solver equilibrium");
     Surface s;
-    s.position = mesh.position.values();
-    for (const mesh::Face& face : mesh.faces) {
-        std::array<std::uint32_t, 3> corners{};
-        for (std::size_t k = 0; k < 3; ++k) corners[k] = static_cast<std::uint32_t>(index(face.vertices[k]));
-        s.corner.push_back(corners);
-    }
-    find_neighbors(mesh, s);
+    lay_leaves(mesh, s);
     find_rings(s);
     find_components_and_loops(s);
-    measure(s);
+    const std::size_t flat = measure(s);
+    if (flat != s.triangles()) throw InputError(fmt::format("vortex_particle: triangle {} of the film has no area", flat));
     find_walls(s, walls);
     return s;
+}
+
+void place(const IdVector<mesh::VertexId, Vec3>& position, Walls walls, Surface& s) {
+    for (std::size_t v = 0; v < s.vertices(); ++v) s.position[v] = position.values()[s.site[v]];
+    const std::size_t flat = measure(s);
+    if (flat != s.triangles())
+        throw NumericalError(fmt::format("vortex_particle: triangle {} of the film has lost its area", flat));
+    find_walls(s, walls);
 }
 
 Vec3 turned(const Vec3& u, const Vec3& from, const Vec3& to) {

@@ -14,6 +14,8 @@
 namespace lamella::vortex_particle {
 
 inline constexpr std::int32_t kNoNeighbor = -1;
+inline constexpr std::uint32_t kNoRegion = 0xffffffffU;
+inline constexpr std::uint32_t kNoPartner = 0xffffffffU;
 
 /// A triangle at a vertex, of which the vertex is corner k.
 struct Incidence {
@@ -50,6 +52,12 @@ struct Surface {
     std::vector<std::int32_t> loop;                     ///< of each vertex; -1: inside
     std::vector<BoundaryLoop> loops;
     std::uint32_t components = 0;
+    std::vector<std::uint32_t> site;                    ///< the vertex of the films' mesh that each vertex lies at
+    std::vector<std::uint32_t> film;                    ///< the face of the films' mesh that each triangle lies in
+    std::vector<std::uint8_t> side;                     ///< 0: it is the leaf of the region behind that face, 1: in front
+    std::vector<std::uint32_t> region;                  ///< the bubble around which it closes, or kNoRegion
+    std::vector<std::uint32_t> partner;                 ///< the other leaf of the same film, or kNoPartner
+    std::vector<double> share;                          ///< of the film: 1/2 where it has two leaves, else 1
 
     // Where it lies.
     std::vector<Vec3> position;
@@ -59,6 +67,7 @@ struct Surface {
     std::vector<Vec3> vertex_normal;              ///< mean of the triangles around, weighted with area
     std::vector<Place> place;                     ///< of each vertex
     std::vector<Vec3> wall_normal;                ///< of each vertex: out of the film, where place is kNoNeighbor; else 0
+    std::vector<double> vertex_share;             ///< mean share of the triangles around each vertex
     std::vector<double> vertex_area;              ///< a third of the triangles around: sums to the area [m^2]
     double total_area = 0.0;
     double longest_edge = 0.0;  ///< [m]
@@ -81,8 +90,13 @@ struct Surface {
 /// What walls do to the flow along them.
 enum class Walls { kSlip, kNoSlip };
 
-/// @throws InputError  films that meet in a triple line, that cannot be oriented, or that fill space periodically
+/// In leaves: see leaves.h.
+/// @throws InputError  films without bubbles that meet in a triple line or cannot be oriented, or that fill space
 Surface surface_of(const mesh::FoamMesh& mesh, Walls walls = Walls::kSlip);
+
+/// Where the surface lies when the vertices of the films' mesh have moved.
+/// @throws NumericalError  a triangle has lost its area
+void place(const IdVector<mesh::VertexId, Vec3>& position, Walls walls, Surface& s);
 
 /// Turns the tangent vector `u` of a surface with normal `from` into one of a surface with normal `to` by the smallest
 /// rotation that does so.

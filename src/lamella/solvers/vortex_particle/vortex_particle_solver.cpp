@@ -4,6 +4,8 @@
 #include "lamella/core/parallel.h"
 #include "lamella/film/surfactant.h"
 #include "lamella/linalg/conjugate_gradient.h"
+#include "lamella/solvers/vortex_particle/exchange.h"
+#include "lamella/solvers/vortex_particle/moving.h"
 #include "lamella/solvers/vortex_particle/solids.h"
 #include "lamella/solvers/vortex_particle/start.h"
 #include "lamella/solvers/vortex_particle/trace.h"
@@ -22,8 +24,16 @@ const film::Problem& films_of(const sim::SolverInput& input) {
     return *input.films;
 }
 
+/// Of the whole film whose leaves these are.
+std::vector<double> whole_thickness(const Surface& s, std::span<const double> thickness) {
+    std::vector<double> whole(thickness.begin(), thickness.end());
+    for (std::size_t v = 0; v < whole.size(); ++v) whole[v] /= s.vertex_share[v];
+    return whole;
+}
+
 /// 1/eta of triangles, from the mean of their corners.
-std::vector<double> inverse_thickness(const Surface& s, std::span<const double> thickness) {
+std::vector<double> inverse_thickness(const Surface& s, std::span<const double> leaves) {
+    const std::vector<double> thickness = whole_thickness(s, leaves);
     std::vector<double> inverse(s.triangles());
     parallel_for(s.triangles(), [&](std::size_t t) {
         const auto& [a, b, c] = s.corner[t];
@@ -47,14 +57,23 @@ VortexParticleSolver::VortexParticleSolver(const Options& options, const sim::So
     film::start_surfactant(input_.films->material);
     if (options_.walls == Walls::kNoSlip && viscosity_ == 0.0)
         throw InputError("vortex_particle.walls = \"no_slip\" needs material.kinematic_viscosity or surface_viscosity");
-    if (!input_.films->events.empty())
-        throw InputError("vortex_particle: events are not built yet; take the [[event]] tables out");
+    if (!input_.films->events.empty() && !options_.moving)
+        throw InputError("vortex_particle: [[event]] tables need films that move: vortex_particle.moving = true");
+    if (options_.junction == Junction::kSheets)
+        throw InputError("vortex_particle.junction = \"sheets\" is not built yet; use \"leaves\"");
     for (const film::Wire& wire : input_.films->wires)
         if (wire.moves() || (wire.ring && wire.ring->blow != 0.0))
-            throw InputError("vortex_particle: wires that move or blow are not built yet; the film stands still");
+            throw InputError("vortex_particle: wires that move or blow are not built yet");
+    if (options_.moving) check_moving();
+    take_shape();
+}
+
+/// What follows from where the surface lies: its curvature, and gravity along it.
+void VortexParticleSolver::take_shape() {
     const std::vector<double> curvature = gaussian_curvature(surface_);
     const double most = std::abs(*std::max_element(curvature.begin(), curvature.end(),
                                                    [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    curvature_.clear();
     if (most * surface_.total_area > 1e-6) curvature_ = curvature;
     std::vector<Vec3> gravity(surface_.triangles());
     for (std::size_t t = 0; t < gravity.size(); ++t) {
@@ -64,7 +83,10 @@ VortexParticleSolver::VortexParticleSolver(const Options& options, const sim::So
     gravity_ = divergence(surface_, gravity);
 }
 
+VortexParticleSolver::~VortexParticleSolver() = default;
+
 void VortexParticleSolver::start(const sim::StartContext&) {
+    if (options_.moving) start_moving();
     particles_ = start_particles(surface_, transfer_, *input_.films, options_, input_.seed);
     bins_ = sort_by_triangle(particles_, surface_.triangles());
     hole_circulation_ = hole_circulation(surface_, input_.films->vortices);
@@ -73,27 +95,31 @@ void VortexParticleSolver::start(const sim::StartContext&) {
     recover_velocity(flow);
     velocity_ = flow.velocity;
     for (std::size_t p = 0; p < particles_.size(); ++p) particles_.velocity[p] = velocity_[particles_.triangle[p]];
+    if (moving_) apply_events();
 }
 
 /// [Tao24, section 4], in the form of the method sheet's section 5.
 sim::StepReport VortexParticleSolver::advance(double time_limit) {
     const double left = time_limit - time_;
     const double dt = choose_step(left);
+    if (moving_) drift(0.5 * dt, {&velocity_});
     const MeshFlow before = particles_to_mesh();
     MeshFlow flow = before;
     drag(dt, flow);
     drive_circulation(dt, flow);
-    const std::vector<double> dilatation = compress(dt, flow);
+    const std::vector<double> dilatation = moving_ ? kick_films(dt, flow) : compress(dt, flow);
     hold_walls(flow);
     diffuse(dt, flow);
     recover_velocity(flow);
     obey_solids(time_ + dt, flow);
     mesh_to_particles(dt, before, flow, dilatation);
+    if (moving_) drift(0.5 * dt, {&velocity_, &flow.velocity});
     move_particles(dt, flow);
     velocity_ = std::move(flow.velocity);
     time_ = left <= dt * (1.0 + 1e-9) ? time_limit : time_ + dt;
     step_ = dt;
     ++steps_;
+    if (moving_) settle_films();
     observed_.reset();
     return {.step = dt, .evaluations = 1, .iterations = iterations_};
 }
@@ -105,6 +131,7 @@ double VortexParticleSolver::choose_step(double left) const {
     fastest = std::max(std::sqrt(fastest), vortex_particle::fastest(input_.films->solids));
     constexpr double kMostCompression = 0.5;  // |theta| dt [method sheet 14]
     double dt = options_.largest_step;
+    if (moving_) dt = std::min(dt, farthest_film_step());
     if (fastest > 0.0) dt = std::min(dt, options_.courant * surface_.mean_edge / fastest);
     if (fastest_dilatation_ > 0.0) dt = std::min(dt, kMostCompression / fastest_dilatation_);
     if (!std::isfinite(fastest) || dt < 1e-6 * options_.largest_step)
@@ -145,10 +172,10 @@ void VortexParticleSolver::drag(double dt, MeshFlow& flow) const {
 /// [Tao24, eq. 14]
 void VortexParticleSolver::drive_circulation(double dt, MeshFlow& flow) {
     if (options_.incompressible) return;
-    const std::vector<double> torque =
-        surfactant_torque(surface_, flow.surfactant, flow.thickness, surfactant_strength_);
+    const std::vector<double> thickness = whole_thickness(surface_, flow.thickness);
+    const std::vector<double> torque = surfactant_torque(surface_, flow.surfactant, thickness, surfactant_strength_);
     for (std::size_t v = 0; v < torque.size(); ++v) flow.circulation[v] += dt * torque[v];
-    const std::vector<double> around = wall_torque(surface_, flow.surfactant, flow.thickness, surfactant_strength_);
+    const std::vector<double> around = wall_torque(surface_, flow.surfactant, thickness, surfactant_strength_);
     for (std::size_t l = 0; l < around.size(); ++l) hole_circulation_[l] -= dt * around[l];
 }
 
@@ -156,23 +183,32 @@ void VortexParticleSolver::drive_circulation(double dt, MeshFlow& flow) {
 ///
 ///     [diag(A_i / (dt Gamma_i)) + (2 R T dt / rho) K_(1/eta)] (Gamma* - Gamma) = -D - dt G - (2 R T dt / rho) K_(1/eta) Gamma
 ///
-/// G_i the weak divergence of gravity. [Tao24, eq. 16; method sheet 5.4] @returns theta* at vertices [1/s]
+/// G_i the weak divergence of gravity. [Tao24, eq. 16; method sheet 5.4]
+SurfactantProblem VortexParticleSolver::surfactant_problem(double dt, const MeshFlow& flow) const {
+    SurfactantProblem problem{.mass = std::vector<double>(surface_.vertices()),
+                              .weight = inverse_thickness(surface_, flow.thickness),
+                              .stiffness = dt * surfactant_strength_,
+                              .right = std::vector<double>(surface_.vertices()),
+                              .energy = surfactant_strength_ * input_.films->material.liquid_density,
+                              .factors = &compression_};
+    for (std::size_t v = 0; v < problem.mass.size(); ++v) {
+        problem.mass[v] = surface_.vertex_area[v] / (dt * flow.surfactant[v]);
+        problem.right[v] = -flow.outflow[v] - dt * gravity_[v];
+    }
+    add_stiffness(surface_, -problem.stiffness, problem.weight, flow.surfactant, problem.right);
+    return problem;
+}
+
+/// @returns theta* at vertices [1/s]
 std::vector<double> VortexParticleSolver::compress(double dt, MeshFlow& flow) {
     std::vector<double> dilatation(surface_.vertices(), 0.0);
     iterations_ = 0;
     if (!options_.incompressible) {
-        const std::vector<double> weight = inverse_thickness(surface_, flow.thickness);
-        const double stiffness = dt * surfactant_strength_;
-        std::vector<double> mass(surface_.vertices()), right(surface_.vertices());
-        for (std::size_t v = 0; v < mass.size(); ++v) {
-            mass[v] = surface_.vertex_area[v] / (dt * flow.surfactant[v]);
-            right[v] = -flow.outflow[v] - dt * gravity_[v];
-        }
-        add_stiffness(surface_, -stiffness, weight, flow.surfactant, right);
+        const SurfactantProblem problem = surfactant_problem(dt, flow);
         const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
             y.resize(x.size());
-            for (std::size_t v = 0; v < x.size(); ++v) y[v] = mass[v] * x[v];
-            add_stiffness(surface_, stiffness, weight, x, y);
+            for (std::size_t v = 0; v < x.size(); ++v) y[v] = problem.mass[v] * x[v];
+            add_stiffness(surface_, problem.stiffness, problem.weight, x, y);
         };
         const auto precondition = [&](const std::vector<double>& x, std::vector<double>& y) {
             y = x;
@@ -182,20 +218,29 @@ std::vector<double> VortexParticleSolver::compress(double dt, MeshFlow& flow) {
         constexpr int kMostIterations = 200, kSlow = 12;
         std::vector<double> change(surface_.vertices(), 0.0);
         const linalg::IterativeSolution done = linalg::preconditioned_conjugate_gradient(
-            apply, precondition, right, change, options_.solve_tolerance, kMostIterations);
-        iterations_ = done.iterations;
-        if (!(done.residual < std::sqrt(options_.solve_tolerance)))
-            throw NumericalError(fmt::format("vortex_particle: at {} s, step {}, the surfactant's equation has a residual "
-                                             "of {} after {} iterations", time_, steps_, done.residual, done.iterations));
+            apply, precondition, problem.right, change, options_.solve_tolerance, kMostIterations);
+        note_iterations(done.iterations, done.residual);
         if (done.iterations > kSlow) reference_.step = 0.0;  // the next step factors anew
         for (std::size_t v = 0; v < dilatation.size(); ++v) dilatation[v] = -change[v] / (dt * flow.surfactant[v]);
     }
+    take_dilatation(dilatation, flow);
+    return dilatation;
+}
+
+/// @throws NumericalError  the surfactant's equation was not solved
+void VortexParticleSolver::note_iterations(int iterations, double residual) {
+    iterations_ = iterations;
+    if (!(residual < std::sqrt(options_.solve_tolerance)))
+        throw NumericalError(fmt::format("vortex_particle: at {} s, step {}, the surfactant's equation has a residual "
+                                         "of {} after {} iterations", time_, steps_, residual, iterations));
+}
+
+void VortexParticleSolver::take_dilatation(const std::vector<double>& dilatation, MeshFlow& flow) {
     fastest_dilatation_ = 0.0;
     for (std::size_t v = 0; v < dilatation.size(); ++v) {
         flow.outflow[v] = surface_.vertex_area[v] * dilatation[v];
         fastest_dilatation_ = std::max(fastest_dilatation_, std::abs(dilatation[v]));
     }
-    return dilatation;
 }
 
 void VortexParticleSolver::refresh_reference(double dt, const MeshFlow& flow) {
@@ -226,6 +271,7 @@ void VortexParticleSolver::hold_walls(MeshFlow& flow) {
 /// 2 nu div(K_G grad Psi), without which a bubble could not rotate as a whole for long. [method sheet 5.5]
 void VortexParticleSolver::diffuse(double dt, MeshFlow& flow) {
     if (viscosity_ == 0.0) return;
+    if (moving_) return diffuse_moving(dt, flow);
     if (diffusion_step_ != dt) {
         diffusion_.factorize(surface_, viscosity_ * dt, {}, surface_.vertex_area);
         diffusion_step_ = dt;
@@ -314,6 +360,7 @@ void VortexParticleSolver::move_particles(double dt, const MeshFlow& flow) {
     trace(surface_, vertex_velocity(surface_, velocity), dt, particles_);
     bins_ = sort_by_triangle(particles_, surface_.triangles());
     fill_empty_triangles(surface_, particles_, bins_);
+    exchange_between_leaves(surface_, bins_, options_.leaf_exchange * dt, particles_);
 }
 
 }  // namespace lamella::vortex_particle

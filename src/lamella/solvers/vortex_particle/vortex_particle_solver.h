@@ -3,10 +3,15 @@
 #include "lamella/sim/registry.h"
 #include "lamella/sim/solver.h"
 #include "lamella/solvers/vortex_particle/flow.h"
+#include "lamella/solvers/vortex_particle/kick.h"
 #include "lamella/solvers/vortex_particle/options.h"
 #include "lamella/solvers/vortex_particle/particles.h"
+#include "lamella/solvers/vortex_particle/rebin.h"
 #include "lamella/solvers/vortex_particle/transfer.h"
 
+#include <functional>
+#include <initializer_list>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -28,6 +33,7 @@ class VortexParticleSolver final : public sim::Solver {
 public:
     /// @throws InputError  options or films that do not go together
     VortexParticleSolver(const Options& options, const sim::SolverInput& input);
+    ~VortexParticleSolver() override;
 
     void start(const sim::StartContext& context) override;
     sim::StepReport advance(double time_limit) override;
@@ -38,6 +44,7 @@ public:
     sim::Frame frame() const override;
     std::vector<sim::Scalar> scalars() const override;
     std::vector<sim::Scalar> characteristic_numbers() const override;
+    std::vector<sim::Event> take_events() override;
 
     void save(sim::StateWriter& out) const override;
     void load(sim::StateReader& in) override;
@@ -47,6 +54,9 @@ public:
     /// The flow of this moment, for whoever looks.
     const MeshFlow& observed() const;
     double kinetic_energy() const;  ///< [J]
+
+    double film_energy() const;     ///< kinetic, of films along their normals, air that counts included [J]
+    const mesh::FoamMesh& films() const;
 
 private:
     // The stages of a step, in order.
@@ -61,6 +71,44 @@ private:
     void recover_velocity(MeshFlow& flow) const;
     void mesh_to_particles(double dt, const MeshFlow& before, const MeshFlow& after, const std::vector<double>& dilatation);
     void move_particles(double dt, const MeshFlow& flow);
+
+    SurfactantProblem surfactant_problem(double dt, const MeshFlow& flow) const;
+    void note_iterations(int iterations, double residual);
+    void take_dilatation(const std::vector<double>& dilatation, MeshFlow& flow);
+    void take_shape();
+
+    // Films that move, in moving.cpp.
+    struct Moving;
+    void check_moving() const;
+    void start_moving();
+    double farthest_film_step() const;
+    void take_films(mesh::FoamMesh mesh);
+    void settle_volumes();
+    void start_carry();
+    void place_films(const Vectors& position, std::span<std::vector<Vec3>* const> along);
+    void drift(double dt, std::initializer_list<std::vector<Vec3>*> along);
+    std::vector<double> kick_films(double dt, MeshFlow& flow);
+    std::vector<double> film_tension(const MeshFlow& flow) const;
+    std::vector<double> film_mass(const MeshFlow& flow) const;
+    std::vector<double> film_areas() const;
+    std::vector<Vec3> resultants(std::span<const double> value, std::span<const double> area) const;
+    std::vector<double> film_forces(const std::vector<double>& mass, const std::vector<double>& tension) const;
+    void stay_with_air(std::vector<double>& speed) const;
+    std::vector<double> outward_signs() const;
+    void factor_moving();
+    void diffuse_moving(double dt, MeshFlow& flow) const;
+    void settle_films();
+    void edit_films(const std::function<void()>& edit);
+    void follow_velocities(const Surface& before, const Relaid& change);
+    void follow_holes(const Surface& before, const mesh::CompactionMaps& maps);
+    void join_clusters();
+    void apply_events();
+    void apply(const film::Event& event);
+    double film_area() const;
+    void add_film_motion(std::vector<Vec3>& velocity) const;
+    void add_film_scalars(std::vector<sim::Scalar>& all) const;
+    void save_moving(sim::StateWriter& out) const;
+    void load_moving(sim::StateReader& in);
 
     void refresh_reference(double dt, const MeshFlow& flow);
     void factor_reference();
@@ -95,6 +143,8 @@ private:
     } reference_;
     double diffusion_step_ = 0.0;    ///< for which the diffusion is factored
     mutable std::optional<MeshFlow> observed_;
+    std::vector<sim::Event> events_;
+    std::unique_ptr<Moving> moving_;  ///< nothing where films stand still
 };
 
 /// Adds the solver "vortex_particle".
