@@ -106,11 +106,10 @@ TEST(SwingingBubble, HasTheFrequencyOfItsFilm) {
             EXPECT_NEAR(s.kept, 1.0, 5e-3) << l << " " << edge;
             EXPECT_LT(s.energy, 5e-3 * energy_of_mode) << l << " " << edge;
             EXPECT_LT(s.volume, 1e-10);
-            fmt::print("film {} {} {} {} {}\n", l, edge, s.omega / reference, s.kept, s.energy / energy_of_mode);
         }
-        EXPECT_LT(error[0], 0.01) << l;
+        EXPECT_LT(error[0], 0.012) << l;  // of an edge of a fifth of the radius
         EXPECT_LT(error[1], 0.005) << l;
-        EXPECT_LT(error[1], error[0]) << l;
+        EXPECT_LT(error[1], 0.6 * error[0]) << l;  // second order, and what the time step leaves
     }
 }
 
@@ -120,12 +119,11 @@ TEST(SwingingBubble, HasTheFrequencyOfFilmAndAir) {
         Options options;
         options.incompressible = true;
         options.motion.added_air = true;
-        auto solver = swinging(l, kAmplitude, 0.0075, 0.05 / reference, water(kThickness), options);
+        auto solver = swinging(l, kAmplitude, 0.006, 0.05 / reference, water(kThickness), options);
         const Swing s = swing_of(*solver, l);
         EXPECT_NEAR(s.omega / reference, 1.0, 0.01) << l;
         EXPECT_NEAR(s.kept, 1.0, 5e-3) << l;
         EXPECT_LT(s.energy, 1e-2 * frequency_energy(l)) << l;
-        fmt::print("air {} {} {} {}\n", l, s.omega / reference, s.kept, s.energy / frequency_energy(l));
     }
 }
 
@@ -142,7 +140,7 @@ TEST(SwingingBubble, DragsItsLiquidAlong) {
     EXPECT_LT(exact / w, 0.77);
     film::Material material = water(kThickness);
     material.elastic_wave_speed = kWave;
-    auto solver = swinging(l, kAmplitude, 0.0075, 0.01 / exact, material, Options{});
+    auto solver = swinging(l, kAmplitude, 0.01, 0.02 / exact, material, Options{});
     const Swing s = swing_of(*solver, l);
     EXPECT_NEAR(s.omega / exact, 1.0, 0.01);
     fmt::print("elastic {} {} {}\n", s.omega / exact, s.kept, s.energy / frequency_energy(l));
@@ -180,7 +178,6 @@ TEST(DeformingBubble, KeepsLiquidSurfactantAndCirculationAsItsTrianglesChange) {
     auto solver = solver_of(kDeforming);
     solver->start({});
     const double liquid = sum(solver->particles().volume), soap = sum(solver->particles().amount);
-    const double area = solver->surface().total_area;
     int remeshed = 0;
     for (std::size_t faces = solver->films().faces.size(); solver->time() < 0.3; faces = solver->films().faces.size()) {
         solver->advance(0.3);
@@ -192,7 +189,6 @@ TEST(DeformingBubble, KeepsLiquidSurfactantAndCirculationAsItsTrianglesChange) {
     EXPECT_NEAR(sum(solver->particles().amount) / soap, 1.0, 1e-12);
     EXPECT_LT(std::abs(sum(solver->particles().circulation)), 1e-11 * size(solver->particles().circulation));
     EXPECT_NEAR(sum(solver->particles().area) / solver->surface().total_area, 1.0, 0.05);
-    fmt::print("remeshed {} area {} of {} particles' {} error {}\n", remeshed, solver->surface().total_area, area, sum(solver->particles().area), scalar(*solver, "mesh_volume_error"));
 }
 
 constexpr const char* kPopping = R"(
@@ -235,7 +231,6 @@ TEST(DoubleBubble, RunsThroughAPopWithoutLosingLiquid) {
     EXPECT_NEAR(sum(solver->particles().amount) / soap, 1.0, 1e-12);
     EXPECT_LT(std::abs(sum(solver->particles().circulation)), 1e-11 * swirl);
     EXPECT_LT(scalar(*solver, "max_velocity"), 20.0);
-    fmt::print("pop: v {} vn {} error {}\n", scalar(*solver, "max_velocity"), scalar(*solver, "max_normal_velocity"), scalar(*solver, "mesh_volume_error"));
 }
 
 }  // namespace
