@@ -1,9 +1,8 @@
 #include "lamella/solvers/vortex_particle/air_mass.h"
 
-#include "surfaces.h"
-
 #include <gtest/gtest.h>
 
+#include "surfaces.h"
 #include <cmath>
 
 namespace lamella::vortex_particle {

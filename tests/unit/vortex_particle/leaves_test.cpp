@@ -1,13 +1,12 @@
-#include "lamella/solvers/vortex_particle/exchange.h"
 #include "lamella/solvers/vortex_particle/leaves.h"
-#include "lamella/solvers/vortex_particle/rebin.h"
-
-#include "surfaces.h"
 
 #include "lamella/mesh/shapes/standard_clusters.h"
+#include "lamella/solvers/vortex_particle/exchange.h"
+#include "lamella/solvers/vortex_particle/rebin.h"
 
 #include <gtest/gtest.h>
 
+#include "surfaces.h"
 #include <numeric>
 
 namespace lamella::vortex_particle {

@@ -39,7 +39,7 @@ void AirMass::factorize(const Surface& s) {
     double part = s.total_area;  // of the largest film, about
     if (s.components > 1) part /= s.components;
     const double curved = mean_curvature_squared(s);
-    const double longest = 4.0 * pi / part;                     // L of the longest waves, about
+    const double longest = 4.0 * pi / part;                      // L of the longest waves, about
     const double shortest = 40.0 / (s.mean_edge * s.mean_edge);  // of the shortest
     const double low = std::log(curved > 1e-3 * longest ? 0.25 * curved : longest) - kBelow;
     const double quarter = curved > 1e-3 * longest ? 0.25 * curved : 0.0;
@@ -55,7 +55,8 @@ void AirMass::factorize(const Surface& s) {
         matrix_.assemble(s, 1.0, {}, mass);
         Term& term = terms_.emplace_back(Term{weight, {}});
         term.factors.analyze(matrix_.matrix());
-        if (!term.factors.factorize(matrix_.matrix())) throw NumericalError("vortex_particle: the air's matrix is singular");
+        if (!term.factors.factorize(matrix_.matrix()))
+            throw NumericalError("vortex_particle: the air's matrix is singular");
     };
     // What lies below the lowest of the sum acts as 1 / L, which a small shift makes regular.
     const double first = std::exp(low - 0.5 * kStep);

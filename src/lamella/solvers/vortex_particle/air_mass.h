@@ -22,7 +22,8 @@ namespace lamella::vortex_particle {
 ///     m = rho [sqrt(G) / L + (1 / pi) int_(G/4)^inf sqrt(4 s - G) / (s (L + s)) ds]
 ///       = rho [c + sum_j w_j / (L + s_j)],   s_j = G / 4 + exp(y_j), y_j two apart: to 1e-4
 ///
-/// It is symmetric and positive. 1 / L leaves out that a closed film grows as a whole, which gas does not let it. Air that films hand to each other across a gap is not in it.
+/// It is symmetric and positive. 1 / L leaves out that a closed film grows as a whole, which gas does not let it. Air
+/// that films hand to each other across a gap is not in it.
 class AirMass {
 public:
     /// @param still  vertices that do not move

@@ -24,7 +24,8 @@ void exchange_between_leaves(const Surface& s, const Bins& bins, double exposure
         for (std::vector<double>* column : {&particles.volume, &particles.amount}) {
             const double moved = (1.0 - left) * sum(giver, *column);
             for (std::size_t p = bins[giver]; p < bins[giver + 1]; ++p) (*column)[p] *= left;
-            for (std::size_t p = bins[taker]; p < bins[taker + 1]; ++p) (*column)[p] += moved * particles.area[p] / room;
+            for (std::size_t p = bins[taker]; p < bins[taker + 1]; ++p)
+                (*column)[p] += moved * particles.area[p] / room;
         }
     });
 }

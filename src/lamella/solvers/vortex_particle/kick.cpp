@@ -55,9 +55,12 @@ double dot(const std::vector<double>& a, const double* b) {
 class System {
 public:
     explicit System(const KickProblem& p)
-        : p_(p), gas_(gas_of(p)), speeds_(p.membrane.size()),
+        : p_(p),
+          gas_(gas_of(p)),
+          speeds_(p.membrane.size()),
           soap_(p.surfactant != nullptr ? p.surface.vertices() : 0),
-          inertia_(p.membrane.mean_inertia()), width_(p.surface.mean_edge * static_cast<double>(p.surface.vertices()) / p.surface.total_area) {
+          inertia_(p.membrane.mean_inertia()),
+          width_(p.surface.mean_edge * static_cast<double>(p.surface.vertices()) / p.surface.total_area) {
         for (const auto& slope : gas_.slope) {
             std::vector<double> y = slope;
             p.membrane.solve(y);
@@ -207,9 +210,9 @@ KickStep kick(const KickProblem& p) {
     for (std::size_t r = 0; r < system.gas().region.size(); ++r)
         x[system.speeds() + system.soap() + r] = p.pressure[index(system.gas().region[r])];
     constexpr int kMostIterations = 100;
-    const linalg::GmresSolution done =
-        linalg::gmres([&](const auto& in, auto& out) { system.apply(in, out); },
-                      [&](const auto& in, auto& out) { system.precondition(in, out); }, b, x, p.tolerance, kMostIterations);
+    const linalg::GmresSolution done = linalg::gmres([&](const auto& in, auto& out) { system.apply(in, out); },
+                                                     [&](const auto& in, auto& out) { system.precondition(in, out); },
+                                                     b, x, p.tolerance, kMostIterations);
     KickStep step;
     step.iterations = done.iterations;
     step.residual = done.residual;

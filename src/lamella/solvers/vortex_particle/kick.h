@@ -14,24 +14,24 @@ namespace lamella::vortex_particle {
 
 /// The surfactant's equation of one step, unknown dGamma at the vertices of the surface.
 struct SurfactantProblem {
-    std::vector<double> mass;     ///< A / (dt Gamma)
-    std::vector<double> weight;   ///< of triangles, 1 / eta [1/m]
-    double stiffness = 0.0;       ///< 2 R T dt / rho
+    std::vector<double> mass;    ///< A / (dt Gamma)
+    std::vector<double> weight;  ///< of triangles, 1 / eta [1/m]
+    double stiffness = 0.0;      ///< 2 R T dt / rho
     std::vector<double> right;
-    double energy = 0.0;          ///< 2 R T: tension of a film per surfactant on one of its interfaces [J/mol]
+    double energy = 0.0;  ///< 2 R T: tension of a film per surfactant on one of its interfaces [J/mol]
     const ShiftedStiffness* factors = nullptr;  ///< about the equation's
 };
 
 struct KickProblem {
-    const mesh::FoamMesh& mesh;   ///< in the middle of the step, as all that follows
+    const mesh::FoamMesh& mesh;  ///< in the middle of the step, as all that follows
     const Surface& surface;
-    const Membrane& membrane;     ///< assembled for this step, factored for some step
+    const Membrane& membrane;  ///< assembled for this step, factored for some step
     double dt;
-    std::vector<double> speed;    ///< of the membrane's unknowns at the start [m/s]
-    std::vector<double> force;    ///< on them, without gas [N]
-    std::vector<double> pressure; ///< of regions, a guess [Pa]
-    std::vector<double> share;    ///< of the air at each vertex of the surface: +-1, to the membrane's direction
-    const AirMass* air;           ///< or nothing
+    std::vector<double> speed;     ///< of the membrane's unknowns at the start [m/s]
+    std::vector<double> force;     ///< on them, without gas [N]
+    std::vector<double> pressure;  ///< of regions, a guess [Pa]
+    std::vector<double> share;     ///< of the air at each vertex of the surface: +-1, to the membrane's direction
+    const AirMass* air;            ///< or nothing
     const SurfactantProblem* surfactant;  ///< or nothing, where it does not act
     double tolerance;
 };
@@ -52,8 +52,8 @@ struct KickStep {
 ///     V_r(x + dt / 2 (v + v')) = V_r0
 ///
 /// With C what films that move stretch. Without surfactant that is the leapfrog method of a system with the inertia M',
-/// which is stable whatever the step and keeps its energy, as M' is at least M plus a quarter of dt^2 times what tension
-/// does to small waves: waves that the step resolves have their frequency, shorter ones are slower. Stretch and
+/// which is stable whatever the step and keeps its energy, as M' is at least M plus a quarter of dt^2 times what
+/// tension does to small waves: waves that the step resolves have their frequency, shorter ones are slower. Stretch and
 /// surfactant are solved for together: a film that moves along its normal makes liquid run along it, which adds
 /// 4 / (l (l + 1)) of its mass to the mode l of a bubble and, taken from the step before, would grow without bound.
 KickStep kick(const KickProblem& problem);

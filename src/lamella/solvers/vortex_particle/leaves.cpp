@@ -84,7 +84,9 @@ void pair_by_wedges(const Surface& s, std::vector<Use>& uses) {
     };
     const auto [axis, first] = across(uses[0]);
     const Vec3 second = cross(axis, first);
-    for (Use& use : uses) use.angle = std::atan2(dot(across(use).second, second), dot(across(use).second, first) * norm(second) / norm(first));
+    for (Use& use : uses)
+        use.angle =
+            std::atan2(dot(across(use).second, second), dot(across(use).second, first) * norm(second) / norm(first));
     std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
         return std::pair{a.angle, a.triangle} < std::pair{b.angle, b.triangle};
     });
@@ -116,17 +118,21 @@ void lay_leaves(const mesh::FoamMesh& mesh, Surface& s) {
                 const std::uint32_t opposite = side == 0 || use.opposite == 0 ? use.opposite : 3 - use.opposite;
                 all.push_back({t, opposite, use.forward == (side == 0)});
             }
-        std::stable_sort(all.begin(), all.end(), [&](const Use& a, const Use& b) { return s.region[a.triangle] < s.region[b.triangle]; });
+        std::stable_sort(all.begin(), all.end(),
+                         [&](const Use& a, const Use& b) { return s.region[a.triangle] < s.region[b.triangle]; });
         for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
             while (end < all.size() && s.region[all[end].triangle] == s.region[all[begin].triangle]) ++end;
-            std::vector<Use> uses(all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end));
+            std::vector<Use> uses(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                                  all.begin() + static_cast<std::ptrdiff_t>(end));
             if (uses.size() == 1) continue;
             if (s.region[uses[0].triangle] == kNoRegion) {
                 if (uses.size() > 2)
-                    throw InputError("vortex_particle: films that bound no bubble and meet in a triple line are not built yet");
+                    throw InputError(
+                        "vortex_particle: films that bound no bubble and meet in a triple line are not built yet");
                 if (uses[0].forward == uses[1].forward)
-                    throw InputError("vortex_particle: neighboring triangles of the film face opposite ways; turn its faces to "
-                                     "one side");
+                    throw InputError(
+                        "vortex_particle: neighboring triangles of the film face opposite ways; turn its faces to "
+                        "one side");
             } else if (uses.size() > 2) {
                 pair_by_wedges(s, uses);
             }

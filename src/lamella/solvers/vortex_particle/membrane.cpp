@@ -155,7 +155,8 @@ double Membrane::mean_inertia() const {
 }
 
 void Membrane::factorize() {
-    if (size() > 0 && !factors_.factorize(matrix_)) throw NumericalError("vortex_particle: the membrane's matrix is singular");
+    if (size() > 0 && !factors_.factorize(matrix_))
+        throw NumericalError("vortex_particle: the membrane's matrix is singular");
 }
 
 Vectors tension_force(const Surface& s, std::size_t vertices, std::span<const double> tension) {
@@ -170,8 +171,7 @@ std::vector<double> stretch_rate(const Surface& s, const Vectors& velocity) {
     std::vector<double> third(s.triangles()), rate(s.vertices());
     parallel_for(s.triangles(), [&](std::size_t t) {
         double sum = 0.0;
-        for (std::size_t k = 0; k < 3; ++k)
-            sum += dot(s.hat_slope[t][k], velocity.values()[s.site[s.corner[t][k]]]);
+        for (std::size_t k = 0; k < 3; ++k) sum += dot(s.hat_slope[t][k], velocity.values()[s.site[s.corner[t][k]]]);
         third[t] = s.area[t] * sum / 3.0;
     });
     parallel_for(s.vertices(), [&](std::size_t v) {

@@ -56,7 +56,7 @@ public:
     bool held(std::uint32_t cluster) const { return held_[cluster] != 0; }
 
 private:
-    std::vector<std::size_t> first_;     ///< #V + 1: unknowns of each vertex
+    std::vector<std::size_t> first_;  ///< #V + 1: unknowns of each vertex
     std::vector<std::uint32_t> vertex_;
     std::vector<Vec3> along_;
     std::vector<std::uint32_t> cluster_;
@@ -65,8 +65,8 @@ private:
     linalg::Ldlt factors_;
     std::vector<std::size_t> slot_start_;  ///< #T + 1, into the following: pairs of unknowns of each triangle
     struct Pair {
-        std::uint8_t k, l;            ///< corners
-        std::uint32_t a, b;           ///< unknowns
+        std::uint8_t k, l;   ///< corners
+        std::uint32_t a, b;  ///< unknowns
         std::size_t slot;
     };
     std::vector<Pair> pair_;

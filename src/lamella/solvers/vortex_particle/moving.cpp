@@ -117,8 +117,7 @@ void VortexParticleSolver::take_films(FoamMesh mesh) {
         if (std::any_of(surface_.share.begin(), surface_.share.end(), [](double share) { return share != 1.0; }))
             throw InputError("vortex_particle.motion.added_air = true: films between two bubbles are not built yet");
         std::vector<std::uint8_t> still(surface_.vertices());
-        for (std::size_t v = 0; v < still.size(); ++v)
-            still[v] = moving->films.on_wire.values()[surface_.site[v]];
+        for (std::size_t v = 0; v < still.size(); ++v) still[v] = moving->films.on_wire.values()[surface_.site[v]];
         moving->air.emplace(surface_, input_.films->material.air_density, still);
     }
     moving_ = std::move(moving);
@@ -197,7 +196,9 @@ std::vector<double> VortexParticleSolver::film_tension(const MeshFlow& flow) con
         tension[t] = surface_.share[t] * material.film_tension();
         if (options_.incompressible) continue;
         const auto& [a, b, c] = surface_.corner[t];
-        tension[t] = surface_.share[t] * std::max(0.0, 2.0 * law.tension((flow.surfactant[a] + flow.surfactant[b] + flow.surfactant[c]) / 3.0));
+        tension[t] =
+            surface_.share[t] *
+            std::max(0.0, 2.0 * law.tension((flow.surfactant[a] + flow.surfactant[b] + flow.surfactant[c]) / 3.0));
     }
     return tension;
 }
@@ -283,19 +284,18 @@ std::vector<double> VortexParticleSolver::kick_films(double dt, MeshFlow& flow) 
     m.membrane.assemble(surface_, mass, tension, dt);
     std::vector<double> speed = m.membrane.speeds(m.velocity);
     for (double& v : speed) v *= std::exp(-options_.motion.damping * dt);
-    const SurfactantProblem surfactant =
-        options_.incompressible ? SurfactantProblem{} : surfactant_problem(dt, flow);
+    const SurfactantProblem surfactant = options_.incompressible ? SurfactantProblem{} : surfactant_problem(dt, flow);
     KickStep step = kick({.mesh = m.films,
-                                .surface = surface_,
-                                .membrane = m.membrane,
-                                .dt = dt,
-                                .speed = std::move(speed),
-                                .force = film_forces(mass, tension),
-                                .pressure = m.pressure,
-                                .share = outward_signs(),
-                                .air = m.air ? &*m.air : nullptr,
-                                .surfactant = options_.incompressible ? nullptr : &surfactant,
-                                .tolerance = options_.solve_tolerance});
+                          .surface = surface_,
+                          .membrane = m.membrane,
+                          .dt = dt,
+                          .speed = std::move(speed),
+                          .force = film_forces(mass, tension),
+                          .pressure = m.pressure,
+                          .share = outward_signs(),
+                          .air = m.air ? &*m.air : nullptr,
+                          .surfactant = options_.incompressible ? nullptr : &surfactant,
+                          .tolerance = options_.solve_tolerance});
     constexpr int kSlow = 20;
     m.reference.stale = step.iterations > kSlow || flow_solver_.take_iterations() > kSlow;
     note_iterations(step.iterations, step.residual);
@@ -304,7 +304,8 @@ std::vector<double> VortexParticleSolver::kick_films(double dt, MeshFlow& flow) 
     m.pressure = step.pressure;
     std::vector<double> dilatation(surface_.vertices(), 0.0);
     for (std::size_t v = 0; v < step.surfactant.size(); ++v)
-        dilatation[v] = -step.surfactant[v] / (dt * flow.surfactant[v]) - 0.5 * step.stretch[v] / surface_.vertex_area[v];
+        dilatation[v] =
+            -step.surfactant[v] / (dt * flow.surfactant[v]) - 0.5 * step.stretch[v] / surface_.vertex_area[v];
     take_dilatation(dilatation, flow);
     return dilatation;
 }
@@ -313,8 +314,7 @@ std::vector<double> VortexParticleSolver::kick_films(double dt, MeshFlow& flow) 
 std::vector<double> VortexParticleSolver::outward_signs() const {
     const Moving& m = *moving_;
     Vectors along(m.films.position.size());
-    for (std::size_t u = 0; u < m.membrane.size(); ++u)
-        along.values()[m.membrane.vertex(u)] = m.membrane.along(u);
+    for (std::size_t u = 0; u < m.membrane.size(); ++u) along.values()[m.membrane.vertex(u)] = m.membrane.along(u);
     std::vector<double> sign(surface_.vertices());
     for (std::size_t v = 0; v < sign.size(); ++v)
         sign[v] = dot(along.values()[surface_.site[v]], surface_.vertex_normal[v]) < 0.0 ? -1.0 : 1.0;
@@ -340,7 +340,8 @@ void VortexParticleSolver::factor_moving() {
     mass = r.mass;
     if (m.air) {
         m.air->factorize(surface_);
-        for (std::size_t v = 0; v < surface_.vertices(); ++v) mass[surface_.site[v]] += m.air->middle() * surface_.vertex_area[v];
+        for (std::size_t v = 0; v < surface_.vertices(); ++v)
+            mass[surface_.site[v]] += m.air->middle() * surface_.vertex_area[v];
     }
     m.membrane.aim(m.films);
     m.membrane.assemble(surface_, mass, r.tension, r.step);

@@ -33,8 +33,10 @@ void VortexParticleSolver::settle_films() {
         constexpr double kSharpest = 1.0;  // degrees
         const double degrees = mesh::min_angle(m.films) * 180.0 / std::numbers::pi;
         if (degrees < kSharpest)
-            throw NumericalError(fmt::format("t = {:.6g} s, step {}: a triangle has an angle of {:.2g} degrees; set "
-                                             "vortex_particle.motion.remeshing = true", time_, steps_, degrees));
+            throw NumericalError(
+                fmt::format("t = {:.6g} s, step {}: a triangle has an angle of {:.2g} degrees; set "
+                            "vortex_particle.motion.remeshing = true",
+                            time_, steps_, degrees));
     }
     apply_events();
 }
@@ -65,7 +67,8 @@ void VortexParticleSolver::edit_films(const std::function<void()>& edit) {
     for (Vectors* values : {&velocity, &carry}) {
         Vectors now(m.films.position.size());
         for (const VertexId old : values->ids())
-            if (index(old) < maps.vertex.size() && maps.vertex[old] != mesh::kNoVertex) now[maps.vertex[old]] = (*values)[old];
+            if (index(old) < maps.vertex.size() && maps.vertex[old] != mesh::kNoVertex)
+                now[maps.vertex[old]] = (*values)[old];
         *values = std::move(now);
     }
     m.velocity = std::move(velocity);
@@ -85,7 +88,8 @@ void VortexParticleSolver::edit_films(const std::function<void()>& edit) {
 
 /// Triangles that stay keep the velocity that the last step found, new ones have that of their particles.
 void VortexParticleSolver::follow_velocities(const Surface& before, const Relaid& change) {
-    std::vector<Vec3> velocity = triangle_velocity(surface_, particles_, bins_, std::vector<Vec3>(surface_.triangles()));
+    std::vector<Vec3> velocity =
+        triangle_velocity(surface_, particles_, bins_, std::vector<Vec3>(surface_.triangles()));
     for (std::size_t t = 0; t < before.triangles(); ++t)
         if (change.kept[t] != Relaid::kNoTriangle) velocity[change.kept[t]] = velocity_[t];
     velocity_ = std::move(velocity);
@@ -109,8 +113,8 @@ void VortexParticleSolver::follow_holes(const Surface& before, const mesh::Compa
     hole_circulation_ = std::move(circulation);
 }
 
-/// Films that have come to hang together go on as one: the steady motion of their cluster is the mean of theirs, by area,
-/// and what differs from it is motion along normals and flow along the films.
+/// Films that have come to hang together go on as one: the steady motion of their cluster is the mean of theirs, by
+/// area, and what differs from it is motion along normals and flow along the films.
 void VortexParticleSolver::join_clusters() {
     Moving& m = *moving_;
     std::vector<Vec3> mean(m.membrane.clusters());
@@ -153,9 +157,10 @@ void VortexParticleSolver::apply_events() {
 
 void VortexParticleSolver::apply(const film::Event& event) {
     const mesh::FoamMesh& mesh = moving_->tracker->mesh();
-    const RegionId region = event.region == film::kRandomBubble
-                                ? film::random_outer_bubble(mesh, input_.seed, moving_->next_event).value_or(mesh::kOutside)
-                                : event.region;
+    const RegionId region =
+        event.region == film::kRandomBubble
+            ? film::random_outer_bubble(mesh, input_.seed, moving_->next_event).value_or(mesh::kOutside)
+            : event.region;
     const auto skip = [&](std::string why) { events_.push_back({time_, "skipped", {}, std::move(why)}); };
     if (index(region) >= mesh.regions.size() || mesh.regions[region].kind != mesh::RegionKind::kClosed)
         return skip(fmt::format("bubble {} is gone already", index(region)));

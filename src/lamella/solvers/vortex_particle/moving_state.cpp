@@ -25,7 +25,8 @@ void read_vectors(sim::StateReader& in, const std::string& name, std::size_t cou
     std::vector<double> values;
     in.read(name, 3 * count, values);
     column.resize(count);
-    for (std::size_t i = 0; i < count; ++i) column.values()[i] = {{values[3 * i], values[3 * i + 1], values[3 * i + 2]}};
+    for (std::size_t i = 0; i < count; ++i)
+        column.values()[i] = {{values[3 * i], values[3 * i + 1], values[3 * i + 2]}};
 }
 
 }  // namespace

@@ -40,9 +40,9 @@ private:
 
 /// The leaves of each face.
 std::vector<std::array<std::uint32_t, 2>> leaves_of(const Laid& laid) {
-    std::vector<std::array<std::uint32_t, 2>> leaves(laid.films.faces.size(), {Relaid::kNoTriangle, Relaid::kNoTriangle});
-    for (std::uint32_t t = 0; t < laid.surface.triangles(); ++t)
-        leaves[laid.surface.film[t]][laid.surface.side[t]] = t;
+    std::vector<std::array<std::uint32_t, 2>> leaves(laid.films.faces.size(),
+                                                     {Relaid::kNoTriangle, Relaid::kNoTriangle});
+    for (std::uint32_t t = 0; t < laid.surface.triangles(); ++t) leaves[laid.surface.film[t]][laid.surface.side[t]] = t;
     return leaves;
 }
 
@@ -57,7 +57,9 @@ bool same(const Laid& before, FaceId old, const Laid& now, FaceId face, const me
 
 }  // namespace
 
-Relaid relaid(const Laid& before, const Laid& now, const mesh::CompactionMaps& maps,
+Relaid relaid(const Laid& before,
+              const Laid& now,
+              const mesh::CompactionMaps& maps,
               std::span<const mesh::TopologyEvent> events) {
     const Heirs heirs(events);
     const auto leaves = leaves_of(now);
@@ -69,7 +71,8 @@ Relaid relaid(const Laid& before, const Laid& now, const mesh::CompactionMaps& m
         const auto old = static_cast<FaceId>(before.surface.film[t]);
         const FaceId face = maps.face[old];
         if (before.surface.region[t] != kNoRegion)
-            edit.region[t] = static_cast<std::uint32_t>(index(heirs.of(static_cast<RegionId>(before.surface.region[t]))));
+            edit.region[t] =
+                static_cast<std::uint32_t>(index(heirs.of(static_cast<RegionId>(before.surface.region[t]))));
         const bool stays = face != mesh::kNoFace && same(before, old, now, face, maps);
         const std::uint32_t leaf = stays ? leaves[index(face)][before.surface.side[t]] : Relaid::kNoTriangle;
         if (leaf != Relaid::kNoTriangle) {
@@ -108,7 +111,8 @@ Bins rebin(const Laid& before, const Laid& now, const Relaid& edit, Particles& p
         std::array<double, 3> place{};
         for (const std::uint32_t t : candidates) {
             const auto& [a, b, c] = s.corner[t];
-            const geometry::NearestOnTriangle near = geometry::nearest_on_triangle(x, s.position[a], s.position[b], s.position[c]);
+            const geometry::NearestOnTriangle near =
+                geometry::nearest_on_triangle(x, s.position[a], s.position[b], s.position[c]);
             const std::array<double, 3> at{near.u, near.v, near.w};
             // Its own bubble's leaf goes first, and one that faces as it did.
             constexpr double kOther = 100.0, kTurned = 10.0;  // edges
@@ -130,7 +134,10 @@ Bins rebin(const Laid& before, const Laid& now, const Relaid& edit, Particles& p
     return sort_by_triangle(particles, s.triangles());
 }
 
-void fit_areas(const Surface& s, const Transfer& transfer, const Bins& bins, const std::vector<std::uint8_t>& touched,
+void fit_areas(const Surface& s,
+               const Transfer& transfer,
+               const Bins& bins,
+               const std::vector<std::uint8_t>& touched,
                Particles& particles) {
     constexpr int kSweeps = 5;
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
@@ -166,7 +173,8 @@ void thin_out(const Surface& s, std::size_t most, Particles& particles, Bins& bi
             for (std::size_t k = 0; k < 3; ++k)
                 particles.place[p][k] = share * particles.place[p][k] + (1.0 - share) * particles.place[p + 1][k];
             particles.velocity[p] = share * particles.velocity[p] + (1.0 - share) * particles.velocity[p + 1];
-            for (std::vector<double>* column : {&particles.circulation, &particles.volume, &particles.amount, &particles.area})
+            for (std::vector<double>* column :
+                 {&particles.circulation, &particles.volume, &particles.amount, &particles.area})
                 (*column)[p] += (*column)[p + 1];
             gone[p + 1] = 1;
             any = true;

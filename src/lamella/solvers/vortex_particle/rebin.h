@@ -21,22 +21,27 @@ struct Laid {
 
 /// What an edit did to the triangles.
 struct Relaid {
-    std::vector<std::uint32_t> kept;     ///< of each former triangle, which one it is now; kNoTriangle: none
-    std::vector<std::uint8_t> touched;   ///< of each vertex now: something around it is new
-    std::vector<std::uint32_t> region;   ///< of each former triangle, which bubble its leaf closes around now
+    std::vector<std::uint32_t> kept;    ///< of each former triangle, which one it is now; kNoTriangle: none
+    std::vector<std::uint8_t> touched;  ///< of each vertex now: something around it is new
+    std::vector<std::uint32_t> region;  ///< of each former triangle, which bubble its leaf closes around now
     static constexpr std::uint32_t kNoTriangle = 0xffffffffU;
 };
-Relaid relaid(const Laid& before, const Laid& now, const mesh::CompactionMaps& maps,
+Relaid relaid(const Laid& before,
+              const Laid& now,
+              const mesh::CompactionMaps& maps,
               std::span<const mesh::TopologyEvent> events);
 
-/// Puts every particle where it belongs: in its own triangle where that is as it was, else to the nearest point of what is
-/// new, if possible on the leaf of its own bubble. Liquid, surfactant and circulation go along as they are. What is left of
-/// a film that has burst so comes to lie on the borders of those that stay.
+/// Puts every particle where it belongs: in its own triangle where that is as it was, else to the nearest point of what
+/// is new, if possible on the leaf of its own bubble. Liquid, surfactant and circulation go along as they are. What is
+/// left of a film that has burst so comes to lie on the borders of those that stay.
 /// @returns  the bins of the particles, sorted
 Bins rebin(const Laid& before, const Laid& now, const Relaid& edit, Particles& particles);
 
 /// Where triangles are new, areas of particles become those that the mesh has there: liquid stays, thickness follows.
-void fit_areas(const Surface& s, const Transfer& transfer, const Bins& bins, const std::vector<std::uint8_t>& touched,
+void fit_areas(const Surface& s,
+               const Transfer& transfer,
+               const Bins& bins,
+               const std::vector<std::uint8_t>& touched,
                Particles& particles);
 
 /// On each component without walls circulation has to sum to zero: what particles of other films have brought is spread
