@@ -6,6 +6,8 @@
 #include "lamella/solvers/vortex_particle/solids.h"
 #include "lamella/solvers/vortex_particle/vortex_particle_solver.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,6 +22,19 @@ sim::Field vectors(std::string name, std::string unit, const std::vector<Vec3>& 
     sim::Field field{std::move(name), std::move(unit), 3, false, {}};
     for (const Vec3& u : values) field.values.insert(field.values.end(), u.v, u.v + 3);
     return field;
+}
+
+void add_scalars(std::size_t number, const Body& body, std::vector<sim::Scalar>& all) {
+    const auto add = [&](const char* what, const char* unit, const Vec3& value, const char* text) {
+        for (std::size_t k = 0; k < 3; ++k)
+            all.push_back({fmt::format("solid_{}_{}_{}", number, what, "xyz"[k]), unit, value[k], text});
+    };
+    add("force", "N", body.force, "of the film on the solid and the film that it covers, in the last step");
+    add("torque", "N m", body.torque, "about its center, likewise");
+    if (!body.free) return;
+    add("center", "m", body.center, "of the free solid");
+    add("velocity", "m/s", body.velocity, "of the free solid");
+    add("spin", "rad/s", body.spin, "of the free solid");
 }
 
 }  // namespace
@@ -60,7 +75,7 @@ sim::Frame VortexParticleSolver::frame() const {
     fields.push_back({"dilatation", "1/s", 1, false, std::move(dilatation)});
     if (!input_.films->solids.empty())
         frame.surface.face_fields.push_back(
-            {"solid", "-", 1, false, cover_of(surface_, input_.films->solids, time_).share});
+            {"solid", "-", 1, false, cover_of(surface_, bodies_).share});
     fields.push_back(vectors("velocity", "m/s", vertex_velocity(surface_, flow.velocity)));
     if (options_.particles_in_frames) {
         std::vector<double> thickness(particles_.size());
@@ -102,7 +117,7 @@ std::vector<sim::Scalar> VortexParticleSolver::scalars() const {
         fewest = std::min(fewest, bins_[t + 1] - bins_[t]);
         most = std::max(most, bins_[t + 1] - bins_[t]);
     }
-    return {
+    std::vector<sim::Scalar> all{
         {"energy_kinetic", "J", kinetic, "of the liquid along the film"},
         {"energy_elastic", "J", elastic, "of the surfactant, above that of an even film of material.surfactant"},
         {"energy_gravity", "J", gravity, "of the liquid, above the origin"},
@@ -123,6 +138,12 @@ std::vector<sim::Scalar> VortexParticleSolver::scalars() const {
         {"fewest_in_triangle", "-", static_cast<double>(fewest), "particles"},
         {"most_in_triangle", "-", static_cast<double>(most), "particles"},
     };
+    if (surface_.open()) {
+        all.push_back({"liquid_in", "m^3", liquid_in_, "that the stream has brought"});
+        all.push_back({"liquid_out", "m^3", liquid_out_, "that it has taken"});
+    }
+    for (std::size_t b = 0; b < bodies_.size(); ++b) add_scalars(b, bodies_[b], all);
+    return all;
 }
 
 std::vector<sim::Scalar> VortexParticleSolver::characteristic_numbers() const {

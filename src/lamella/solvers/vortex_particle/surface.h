@@ -6,6 +6,7 @@
 #include "lamella/mesh/foam_mesh.h"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -28,7 +29,14 @@ enum class Place : std::uint8_t {
     kStill,   ///< no flow: on a wall without slip, or where two walls meet at an angle
 };
 
-/// One closed curve of walls.
+/// What lies beyond the end of a film.
+enum class Opening : std::uint8_t {
+    kNone,  ///< a wall, or more film
+    kInflow,
+    kOutflow,
+};
+
+/// One closed curve of walls and openings.
 struct BoundaryLoop {
     std::uint32_t component;
     double length = 0.0;  ///< [m]
@@ -50,6 +58,9 @@ struct Surface {
     std::vector<std::int32_t> loop;                     ///< of each vertex; -1: inside
     std::vector<BoundaryLoop> loops;
     std::uint32_t components = 0;
+    // Empty in a film that nothing streams through.
+    std::vector<std::array<Opening, 3>> opening;  ///< of the edge opposite to corner k
+    std::vector<Opening> vertex_opening;          ///< of each vertex; where inflow meets outflow, outflow
 
     // Where it lies.
     std::vector<Vec3> position;
@@ -73,6 +84,11 @@ struct Surface {
     Vec3 edge(std::size_t t, std::size_t k) const {
         return position[corner[t][(k + 2) % 3]] - position[corner[t][(k + 1) % 3]];
     }
+    /// Of an equilateral triangle of its area [m].
+    double edge_length(std::size_t t) const { return std::sqrt(2.3094010767585034 * area[t]); }  // 4 / sqrt(3)
+    bool open() const { return !opening.empty(); }
+    Opening opening_of(std::size_t t, std::size_t k) const { return open() ? opening[t][k] : Opening::kNone; }
+    bool lets_out(std::size_t v) const { return open() && vertex_opening[v] == Opening::kOutflow; }
     Vec3 point(std::size_t t, const std::array<double, 3>& b) const {
         return b[0] * position[corner[t][0]] + b[1] * position[corner[t][1]] + b[2] * position[corner[t][2]];
     }
@@ -81,8 +97,11 @@ struct Surface {
 /// What walls do to the flow along them.
 enum class Walls { kSlip, kNoSlip };
 
-/// @throws InputError  films that meet in a triple line, that cannot be oriented, or that fill space periodically
-Surface surface_of(const mesh::FoamMesh& mesh, Walls walls = Walls::kSlip);
+/// @param stream  the velocity with which film runs through it [m/s], in where it points into the film and out where it
+///                points out; 0: it is closed
+/// @throws InputError  films that meet in a triple line, that cannot be oriented, or that fill space periodically; a
+///                     stream that does not run along a flat film and its walls
+Surface surface_of(const mesh::FoamMesh& mesh, Walls walls = Walls::kSlip, const Vec3& stream = {});
 
 /// Turns the tangent vector `u` of a surface with normal `from` into one of a surface with normal `to` by the smallest
 /// rotation that does so.
