@@ -70,6 +70,7 @@ edge_length = 0.1
 [time]
 end = 1.0
 [vortex_particle]
+incompressible = true
 largest_step = 0.02
 [vortex_particle.stream]
 velocity = [1, 0, 0]
@@ -164,10 +165,15 @@ TEST(VortexParticleSolver, RefusesWhatItCannotDo) {
     EXPECT_THROW(solver_of("[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n[[event]]\nkind=\"inflate\"\nfactor=1.1\n"), InputError);
     EXPECT_THROW(solver_of("[[film]]\nshape=\"disk\"\n[[vortex]]\nprofile=\"taylor\"\nspeed=1.0\n"), InputError);
     const std::string film = "[[film]]\nshape=\"rectangle\"\nu=[1,0,0]\nv=[0,1,0]\n[resolution]\nedge_length=0.2\n";
-    for (const char* wrong : {"velocity=[1,0.3,0]", "velocity=[0,0,1]", "velocity=[1,0,0]\n[vortex_particle.start]\nsurfactant=\"balanced\""})
-        EXPECT_THROW(solver_of(film + "[vortex_particle.stream]\n" + wrong), InputError) << wrong;
-    EXPECT_THROW(solver_of(film + "[vortex_particle]\nwalls=\"no_slip\"\n[vortex_particle.stream]\nvelocity=[1,0,0]"), InputError);
-    EXPECT_THROW(solver_of(film + "[material]\ngravity=[0,-9.81,0]\n[vortex_particle.stream]\nvelocity=[1,0,0]"), InputError);
+    const auto stream = [&](const std::string& more, const std::string& velocity) {
+        return solver_of(film + more + "[vortex_particle.stream]\nvelocity=" + velocity);
+    };
+    EXPECT_NO_THROW(stream("[vortex_particle]\nincompressible=true\n", "[1,0,0]"));
+    EXPECT_THROW(stream("", "[1,0,0]"), InputError);
+    EXPECT_THROW(stream("[vortex_particle]\nincompressible=true\n", "[1,0.3,0]"), InputError);
+    EXPECT_THROW(stream("[vortex_particle]\nincompressible=true\n", "[0,0,1]"), InputError);
+    EXPECT_THROW(stream("[vortex_particle]\nincompressible=true\nwalls=\"no_slip\"\n", "[1,0,0]"), InputError);
+    EXPECT_THROW(stream("[material]\ngravity=[0,-9.81,0]\n[vortex_particle]\nincompressible=true\n", "[1,0,0]"), InputError);
     EXPECT_THROW(solver_of("[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n[[solid]]\ncenter=[0,0,1]\nradius=0.3\nfree=true\n"), InputError);
     for (const char* wrong : {"period=1.0", "stride=[1,0,0]", "mass=1.0", "free=true\nend=1.0"})
         EXPECT_THROW(solver_of(film + "[[solid]]\nradius=0.1\n" + wrong), InputError) << wrong;

@@ -164,6 +164,8 @@ radius = 0.3
 free = true
 [resolution]
 edge_length = 0.125
+[vortex_particle]
+incompressible = true
 [vortex_particle.stream]
 velocity = [1, 0, 0]
 )");

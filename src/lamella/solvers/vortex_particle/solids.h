@@ -30,9 +30,8 @@ std::vector<Body> bodies_at_start(std::span<const film::Solid> solids);
 /// Puts those that move as they are told where they are at `time`; the others `ahead` in time by their velocity [s].
 void move_bodies(std::span<const film::Solid> solids, double time, double ahead, std::span<Body> bodies);
 
-/// The share of each triangle that a solid covers, 0 to 1 over a layer of one edge at its surface, and which solid: where
-/// several overlap the one that covers more. The layer lies so that in a flow a solid acts as large as it is, by the dipole
-/// around it (tests/validation).
+/// The share of each triangle that a solid covers, 0 to 1 over a layer of one edge inside its surface, and which solid:
+/// where several overlap the one that covers more.
 struct Cover {
     std::vector<double> share;
     std::vector<std::int32_t> body;  ///< -1: none

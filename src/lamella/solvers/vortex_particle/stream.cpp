@@ -15,10 +15,11 @@ Stream::Stream(const Surface& s, const film::Problem& films, const Options& opti
     : surface_(s),
       velocity_(options.stream.velocity),
       fresh_(s, films, options.start),
-      elastic_(!options.incompressible),
       particle_area_(s.total_area / static_cast<double>(s.triangles()) / options.particles_per_triangle),
       seed_(seed) {
     if (!s.open()) return;
+    if (!options.incompressible)
+        throw InputError("vortex_particle: streams of elastic films are not built yet; set vortex_particle.incompressible = true");
     if (options.walls == Walls::kNoSlip)
         throw InputError("vortex_particle.walls = \"no_slip\" is not built for a film that streams; its sides let it slip");
     if (options.start.surfactant == SurfactantProfile::kBalanced)
@@ -85,7 +86,6 @@ void Stream::absorb(double dt, Particles& particles) const {
         const double left = std::exp(-dt * fastest * depth);
         particles.circulation[p] *= left;
         particles.velocity[p] = velocity_ + left * (particles.velocity[p] - velocity_);
-        if (elastic_) particles.area[p] *= std::pow(particles.amount[p] / fresh_.rest_surfactant() / particles.area[p], 1.0 - left);
     });
 }
 

@@ -27,7 +27,7 @@ public:
     /// Adds the film that came in during the last `dt`, as it was at the start: the strip behind each edge of the inflow.
     /// @returns its liquid [m^3]
     double let_in(double dt, std::int64_t step, Particles& particles) const;
-    /// In front of the outflow particles lose their circulation, speed beside the stream and pressure, so that what leaves
+    /// In front of the outflow particles lose their circulation and their speed beside the stream, so that what leaves
     /// disturbs nothing: to a twentieth over the length of the sponge.
     void absorb(double dt, Particles& particles) const;
 
@@ -37,7 +37,6 @@ private:
     const Surface& surface_;
     Vec3 velocity_;
     Start fresh_;
-    bool elastic_;
     double particle_area_ = 0.0;  ///< [m^2]
     std::uint64_t seed_;
     double sponge_start_ = 0.0, sponge_length_ = 0.0;  ///< along the stream [m]

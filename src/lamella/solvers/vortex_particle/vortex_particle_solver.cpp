@@ -165,7 +165,7 @@ void VortexParticleSolver::drive_circulation(double dt, MeshFlow& flow) {
 ///
 ///     [diag(A_i / (dt Gamma_i)) + (2 R T dt / rho) K_(1/eta)] (Gamma* - Gamma) = -D - dt G - (2 R T dt / rho) K_(1/eta) Gamma
 ///
-/// G_i the weak divergence of gravity. Where film leaves, what is missing to Gamma_0 is given [method sheet 6.4]. [Tao24, eq. 16; method sheet 5.4] @returns theta* at vertices [1/s]
+/// G_i the weak divergence of gravity. [Tao24, eq. 16; method sheet 5.4] @returns theta* at vertices [1/s]
 std::vector<double> VortexParticleSolver::compress(double dt, MeshFlow& flow) {
     std::vector<double> dilatation(surface_.vertices(), 0.0);
     iterations_ = 0;
@@ -178,32 +178,18 @@ std::vector<double> VortexParticleSolver::compress(double dt, MeshFlow& flow) {
             right[v] = -flow.outflow[v] - dt * gravity_[v];
         }
         add_stiffness(surface_, -stiffness, weight, flow.surfactant, right);
-        std::vector<double> change(surface_.vertices(), 0.0);
-        // Rows of vertices whose change is given: nothing is left to be solved there.
-        const auto skip_given = [&](std::vector<double>& y) {
-            if (surface_.open())
-                for (std::size_t v = 0; v < y.size(); ++v)
-                    if (surface_.lets_out(v)) y[v] = 0.0;
-        };
-        if (surface_.open()) {
-            const double rest = film::start_surfactant(input_.films->material);
-            for (std::size_t v = 0; v < change.size(); ++v)
-                if (surface_.lets_out(v)) change[v] = rest - flow.surfactant[v];
-        }
-        skip_given(right);
         const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
             y.resize(x.size());
             for (std::size_t v = 0; v < x.size(); ++v) y[v] = mass[v] * x[v];
             add_stiffness(surface_, stiffness, weight, x, y);
-            skip_given(y);
         };
         const auto precondition = [&](const std::vector<double>& x, std::vector<double>& y) {
             y = x;
             compression_.solve(y);
-            skip_given(y);
         };
         if (reference_.step != dt) refresh_reference(dt, flow);
         constexpr int kMostIterations = 200, kSlow = 12;
+        std::vector<double> change(surface_.vertices(), 0.0);
         const linalg::IterativeSolution done = linalg::preconditioned_conjugate_gradient(
             apply, precondition, right, change, options_.solve_tolerance, kMostIterations);
         iterations_ = done.iterations;
