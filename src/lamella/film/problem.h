@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -70,18 +71,27 @@ struct Event {
     double duration = 0.0;                      ///< inflate: how long it takes, for the solvers that move [s]
 };
 
-/// A ball that a film runs around, as a stick through it: it moves and turns as it is told, and takes the film with it.
-/// [[solid]] of a scene.
+/// A ball that a film runs around, as a stick through it, and that takes the film with it. It moves and turns as it is
+/// told, once or in steps like a leg, or freely. [[solid]] of a scene.
 struct Solid {
     Vec3 center;         ///< at time 0 [m]
     double radius = 0.0; ///< [m]
-    Vec3 velocity;       ///< [m/s]
-    Vec3 spin;           ///< angular velocity [rad/s]
+    Vec3 velocity;       ///< as it is told; of a free one at the start [m/s]
+    Vec3 spin;           ///< angular velocity, likewise [rad/s]
     double start = 0.0;  ///< it moves from here [s] ...
     double end = std::numeric_limits<double>::infinity();  ///< ... to here
+    double period = 0.0;  ///< > 0: it does so again each period, and between is out of the film, on its way back [s]
+    Vec3 stride;          ///< how much farther each period begins [m]
+    bool free = false;    ///< what the film does to it moves it
+    double mass = 0.0;    ///< of a free one, beyond that of the film that it covers [kg]
 
-    bool moves(double time) const { return time >= start && time < end; }
-    Vec3 center_at(double time) const { return center + (std::clamp(time, start, end) - start) * velocity; }
+    double since_period(double time) const { return period > 0.0 ? time - period * std::floor(time / period) : time; }
+    bool moves(double time) const { return since_period(time) >= start && since_period(time) < end; }
+    bool in_film(double time) const { return period == 0.0 || moves(time); }
+    Vec3 center_at(double time) const {
+        const Vec3 begin = period > 0.0 ? center + std::floor(time / period) * stride : center;
+        return begin + (std::clamp(since_period(time), start, end) - start) * velocity;
+    }
 };
 
 /// What every film solver starts from, whatever its method: scene tables [material], [[bubble]], [[film]], [[wire]],

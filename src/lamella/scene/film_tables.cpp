@@ -105,11 +105,14 @@ FoamMesh bubbles_of(const std::vector<mesh::Ball>& balls, double edge_length) {
 }
 
 FoamMesh film_of(const FilmTable& film, double h) {
+    if (film.focus_edge > 0.0 && film.shape != FilmShape::kRectangle)
+        throw InputError("film.focus_edge is for shape = \"rectangle\"");
     switch (film.shape) {
         case FilmShape::kDisk:
             return mesh::disk(film.center, film.axis, film.radius, h);
         case FilmShape::kRectangle:
-            return mesh::rectangle(film.center, film.u, film.v, h);
+            if (film.focus_edge == 0.0) return mesh::rectangle(film.center, film.u, film.v, h);
+            return mesh::rectangle(film.center, film.u, film.v, h, {film.focus, film.focus_radius, film.focus_edge});
         case FilmShape::kHemisphere:
             return mesh::hemisphere(film.center, film.axis, film.radius, h);
         case FilmShape::kCylinder:
@@ -288,7 +291,19 @@ film::Solid solid_of(const SolidTable& table, const SourceLocation& where) {
     if (!(table.radius > 0.0)) throw InputError(where, "solid.radius is missing, e.g. \"5 cm\"");
     if (table.end > 0.0 && table.end < table.start)
         throw InputError(where, fmt::format("solid.end = {} comes before solid.start = {}", table.end, table.start));
+    if (table.period > 0.0 && !(table.end > table.start && table.end <= table.period))
+        throw InputError(where, fmt::format("solid.end = {} has to lie between solid.start = {} and solid.period = {}", table.end,
+                                            table.start, table.period));
+    if (table.period == 0.0 && norm(table.stride) > 0.0)
+        throw InputError(where, "solid.stride needs a solid.period, after which the next step begins");
+    if (table.free && (table.start > 0.0 || table.end > 0.0 || table.period > 0.0))
+        throw InputError(where, "a solid with free = true moves by itself; take start, end and period out");
+    if (!table.free && table.mass > 0.0) throw InputError(where, "solid.mass is read where free = true");
     film::Solid solid{.center = table.center, .radius = table.radius, .velocity = table.velocity, .spin = table.spin, .start = table.start};
+    solid.period = table.period;
+    solid.stride = table.stride;
+    solid.free = table.free;
+    solid.mass = table.mass;
     if (table.end > 0.0) solid.end = table.end;
     return solid;
 }

@@ -78,6 +78,9 @@ struct FilmTable {
     mesh::CatenoidBranch branch = mesh::CatenoidBranch::kStable;
     Vec3 u{{0.1, 0.0, 0.0}};
     Vec3 v{{0.0, 0.1, 0.0}};
+    Vec3 focus;
+    double focus_radius = 0.0;
+    double focus_edge = 0.0;
     mesh::FrameShape frame = mesh::FrameShape::kCube;
     double edge = 0.1;
     double volume = 1e-4;
@@ -114,6 +117,11 @@ struct FilmTable {
                {"of a catenoid: with the wide neck or the narrow one"});
         option("u", u, sim::any_number(), {"first side of a rectangle", "length"});
         option("v", v, sim::any_number(), {"second side of a rectangle, at a right angle", "length"});
+        option("focus", focus, sim::any_number(), {"point of a rectangle around which its edges are shorter", "length"});
+        option("focus_radius", focus_radius, sim::at_least(0.0), {"rows and columns so near have focus_edge", "length"});
+        option("focus_edge", focus_edge, sim::at_least(0.0),
+               {"length of edges there; they grow by a tenth of the distance, up to resolution.edge_length; 0: no focus",
+                "length"});
         option("frame", frame,
                sim::choices<mesh::FrameShape>({{"tetrahedron", mesh::FrameShape::kTetrahedron},
                                                {"cube", mesh::FrameShape::kCube},
@@ -266,15 +274,25 @@ struct SolidTable {
     Vec3 spin;
     double start = 0.0;
     double end = 0.0;
+    double period = 0.0;
+    Vec3 stride;
+    bool free = false;
+    double mass = 0.0;
 
     template <class Visitor>
     void visit(Visitor&& option) {
         option("center", center, sim::any_number(), {"where it is at first", "length"});
         option("radius", radius, sim::at_least(0.0), {"of the ball", "length"});
-        option("velocity", velocity, sim::any_number(), {"of the ball", "length/time"});
-        option("spin", spin, sim::any_number(), {"angular velocity", "1/time"});
+        option("velocity", velocity, sim::any_number(), {"of the ball; of a free one at the start", "length/time"});
+        option("spin", spin, sim::any_number(), {"angular velocity, likewise", "1/time"});
         option("start", start, sim::at_least(0.0), {"when it begins to move", "time"});
         option("end", end, sim::at_least(0.0), {"when it stops; 0: never", "time"});
+        option("period", period, sim::at_least(0.0),
+               {"it moves from start to end of each period and is out of the film between, as a leg that steps; 0: once",
+                "time"});
+        option("stride", stride, sim::any_number(), {"how much farther it begins each period", "length"});
+        option("free", free, {"true: what the film does to it moves it"});
+        option("mass", mass, sim::at_least(0.0), {"of a free one, beyond that of the film that it covers", "mass"});
     }
 };
 

@@ -42,6 +42,40 @@ thickness = 0.3
 surfactant = 0.2
 )";
 
+/// A stream around a disk that is held, a free one, and a leg that steps.
+constexpr const char* kStreaming = R"(
+[material]
+kinematic_viscosity = 1e-3
+[[film]]
+shape = "rectangle"
+center = [0, -1, 0]
+u = [3, 0, 0]
+v = [0, 2, 0]
+[[solid]]
+center = [0.8, 0.3, 0]
+radius = 0.25
+[[solid]]
+center = [0.8, -0.4, 0]
+radius = 0.25
+free = true
+mass = 1e-4
+[[solid]]
+center = [2.0, 0.0, 0]
+radius = 0.2
+velocity = [0, 1, 0]
+end = 0.1
+period = 0.2
+[resolution]
+edge_length = 0.1
+[time]
+end = 1.0
+[vortex_particle]
+incompressible = true
+largest_step = 0.02
+[vortex_particle.stream]
+velocity = [1, 0, 0]
+)";
+
 void advance(VortexParticleSolver& solver, double until, std::int64_t stop_after = 1'000'000) {
     for (std::int64_t k = 0; k < stop_after && solver.time() < until; ++k) solver.advance(until);
 }
@@ -53,40 +87,49 @@ void expect_equal(const VortexParticleSolver& a, const VortexParticleSolver& b) 
     EXPECT_EQ(a.particles().circulation, b.particles().circulation);
     EXPECT_EQ(a.particles().area, b.particles().area);
     EXPECT_EQ(a.particles().velocity, b.particles().velocity);
+    for (std::size_t k = 0; k < a.bodies().size(); ++k) {
+        EXPECT_EQ(a.bodies()[k].center, b.bodies()[k].center);
+        EXPECT_EQ(a.bodies()[k].velocity, b.bodies()[k].velocity);
+        EXPECT_EQ(a.bodies()[k].force, b.bodies()[k].force);
+        EXPECT_EQ(a.bodies()[k].in_film, b.bodies()[k].in_film);
+    }
 }
 
 TEST(VortexParticleSolver, GivesTheSameBitsOnOneAndTwoThreads) {
-    for (const char* transfer : {"hat", "kernel"}) {
-        std::vector<std::unique_ptr<VortexParticleSolver>> runs;
-        for (const int threads : {1, 2}) {
-            const ThreadLimit limit(threads);
-            runs.push_back(solver_of(kBusy, {std::string("vortex_particle.transfer=") + transfer}));
-            runs.back()->start({});
-            advance(*runs.back(), 0.3);
+    for (const char* scene : {kBusy, kStreaming})
+        for (const char* transfer : {"hat", "kernel"}) {
+            std::vector<std::unique_ptr<VortexParticleSolver>> runs;
+            for (const int threads : {1, 2}) {
+                const ThreadLimit limit(threads);
+                runs.push_back(solver_of(scene, {std::string("vortex_particle.transfer=") + transfer}));
+                runs.back()->start({});
+                advance(*runs.back(), 0.3);
+            }
+            expect_equal(*runs[0], *runs[1]);
         }
-        expect_equal(*runs[0], *runs[1]);
-    }
 }
 
 TEST(VortexParticleSolver, GoesOnFromACheckpointWithTheSameBits) {
-    auto whole = solver_of(kBusy);
-    whole->start({});
-    advance(*whole, 0.3);
-    for (const std::int64_t stop : {1, 2, 7, 20}) {
-        auto first = solver_of(kBusy);
-        first->start({});
-        advance(*first, 0.3, stop);
-        ASSERT_LT(first->time(), 0.3);
-        Memory memory;
-        first->save(memory);
-        auto second = solver_of(kBusy);
-        second->load(memory);
-        advance(*second, 0.3);
-        expect_equal(*whole, *second);
+    for (const char* scene : {kBusy, kStreaming}) {
+        auto whole = solver_of(scene);
+        whole->start({});
+        advance(*whole, 0.3);
+        for (const std::int64_t stop : {1, 2, 7, 14}) {
+            auto first = solver_of(scene);
+            first->start({});
+            advance(*first, 0.3, stop);
+            ASSERT_LT(first->time(), 0.3);
+            Memory memory;
+            first->save(memory);
+            auto second = solver_of(scene);
+            second->load(memory);
+            advance(*second, 0.3);
+            expect_equal(*whole, *second);
+        }
     }
 }
 
-/// Bubbles that swing, touch, and of which one bursts; triangles change.
+/// Bubbles that swing, touch, are stirred, and of which one bursts; triangles change.
 constexpr const char* kMoving = R"(
 [material]
 gravity = [0.0, 0.0, -9.81]
@@ -98,6 +141,10 @@ volume = 1e-3
 center = [0.06, 0.0, 0.02]
 radius = 0.03
 circulation = 0.02
+[[solid]]
+center = [0.06, 0.0, -0.02]
+radius = 0.05
+velocity = [0.0, 0.3, 0.0]
 [resolution]
 edge_length = 0.03
 [[event]]
@@ -126,6 +173,35 @@ TEST(MovingFilms, GiveTheSameBitsOnOneAndTwoThreads) {
     }
     expect_equal_films(*runs[0], *runs[1]);
     EXPECT_EQ(runs[0]->surface().components, 1U);  // it has burst
+}
+
+TEST(MovingFilms, GoAlongWithSolids) {
+    auto solver = solver_of(kMoving);
+    solver->start({});
+    advance(*solver, 0.01);
+    const Surface& s = solver->surface();
+    const Cover cover = cover_of(s, solver->bodies());
+    double lack = 0.0, speed = 0.0;
+    for (std::size_t t = 0; t < s.triangles(); ++t) {
+        if (cover.share[t] < 1.0) continue;
+        const Vec3 v = solver->bodies()[0].velocity, wanted = v - dot(v, s.normal[t]) * s.normal[t];
+        lack += s.area[t] * norm(solver->observed().velocity[t] - wanted);
+        speed += s.area[t] * norm(wanted);
+    }
+    EXPECT_GT(speed, 0.0);
+    EXPECT_LT(lack, 0.1 * speed);
+    EXPECT_GT(norm(solver->bodies()[0].force), 0.0);
+}
+
+TEST(MovingFilms, BurstWhereTheyAreAsThinAsAsked) {
+    auto solver = solver_of(kMoving, {"material.thickness=1e-6", "vortex_particle.rupture_thickness=0.7e-6"});
+    solver->start({});
+    advance(*solver, 0.001);
+    EXPECT_FALSE(solver->stop_reason());  // halves of the film between the bubbles are thinner, but not the film
+    auto thin = solver_of(kMoving, {"material.thickness=0.7e-6", "vortex_particle.rupture_thickness=0.7e-6"});
+    thin->start({});
+    advance(*thin, 0.001);
+    EXPECT_TRUE(thin->stop_reason());
 }
 
 TEST(MovingFilms, GoOnFromACheckpointWithTheSameBits) {
@@ -185,6 +261,23 @@ TEST(VortexParticleSolver, RefusesWhatItCannotDo) {
     EXPECT_THROW(solver_of("[material]\nelasticity=0.01\nsurfactant=1e-6\n[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n"), InputError);
     EXPECT_THROW(solver_of("[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n[[event]]\nkind=\"inflate\"\nfactor=1.1\n"), InputError);
     EXPECT_THROW(solver_of("[[film]]\nshape=\"disk\"\n[[vortex]]\nprofile=\"taylor\"\nspeed=1.0\n"), InputError);
+    const std::string film = "[[film]]\nshape=\"rectangle\"\nu=[1,0,0]\nv=[0,1,0]\n[resolution]\nedge_length=0.2\n";
+    const auto stream = [&](const std::string& more, const std::string& velocity) {
+        return solver_of(film + more + "[vortex_particle.stream]\nvelocity=" + velocity);
+    };
+    EXPECT_NO_THROW(stream("[vortex_particle]\nincompressible=true\n", "[1,0,0]"));
+    EXPECT_THROW(stream("", "[1,0,0]"), InputError);
+    EXPECT_THROW(stream("[vortex_particle]\nincompressible=true\n", "[1,0.3,0]"), InputError);
+    EXPECT_THROW(stream("[vortex_particle]\nincompressible=true\n", "[0,0,1]"), InputError);
+    EXPECT_THROW(stream("[vortex_particle]\nincompressible=true\nwalls=\"no_slip\"\n", "[1,0,0]"), InputError);
+    EXPECT_THROW(stream("[material]\ngravity=[0,-9.81,0]\n[vortex_particle]\nincompressible=true\n", "[1,0,0]"), InputError);
+    EXPECT_THROW(solver_of("[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n[[solid]]\ncenter=[0,0,1]\nradius=0.3\nfree=true\n"), InputError);
+    EXPECT_THROW(stream("[vortex_particle]\nincompressible=true\nmoving=true\n", "[1,0,0]"), InputError);
+    EXPECT_THROW(solver_of(film + "[[solid]]\nradius=0.3\nfree=true\n[vortex_particle]\nmoving=true\n"), InputError);
+    EXPECT_THROW(solver_of("[[bubble]]\ncenter=[0,0,0]\nradius=1.0\nvelocity=[1,0,0]\n[[solid]]\ncenter=[0,0,1]\nradius=0.3\n"
+                           "[vortex_particle]\nmoving=true\n"), InputError);
+    for (const char* wrong : {"period=1.0", "stride=[1,0,0]", "mass=1.0", "free=true\nend=1.0"})
+        EXPECT_THROW(solver_of(film + "[[solid]]\nradius=0.1\n" + wrong), InputError) << wrong;
     auto hole = solver_of("[[film]]\nshape=\"disk\"\n[[vortex]]\nprofile=\"hole\"\ncirculation=1.0\n");
     EXPECT_THROW(hole->start({}), InputError);
 }

@@ -81,12 +81,99 @@ edge_length = 0.0625
     EXPECT_GT(size, 0.3);  // two vortices of about U times the diameter
     EXPECT_LT(std::abs(std::accumulate(circulation.begin(), circulation.end(), 0.0)), 1e-11 * size);
     // It stands still now, and so does the film that it covers.
-    const Cover cover = cover_of(solver->surface(), {}, 0.0);
     for (std::size_t t = 0; t < solver->surface().triangles(); ++t) {
         const Vec3 x = solver->surface().point(t, {1.0 / 3, 1.0 / 3, 1.0 / 3}) - Vec3{{0.3, 0.01, 0.0}};
         if (norm(x) >= 0.15 - 0.0625) continue;
         EXPECT_LT(norm(solver->observed().velocity[t]), 0.1);
     }
+}
+
+constexpr double kFilmMass = 1000.0 * 4e-7;  // per area [kg/m^2]
+constexpr double kPi = 3.14159265358979323846;
+
+/// A disk of radius 0.4 m in a film at rest, ten radii from its walls.
+std::unique_ptr<VortexParticleSolver> disk_in_still_film(double edge, const std::string& solid, const std::string& vortex = "") {
+    return solver_of(fmt::format(R"(
+[material]
+kinematic_viscosity = 0.0
+[[film]]
+shape = "rectangle"
+center = [-4, -4, 0]
+u = [8, 0, 0]
+v = [0, 8, 0]
+[[solid]]
+radius = 0.4
+{}
+{}
+[resolution]
+edge_length = {}
+[vortex_particle]
+incompressible = true
+particles_per_triangle = 3
+largest_step = 0.001
+)", solid, vortex, edge));
+}
+
+/// The film that a disk covers, and as much again that has to get around it, take up the momentum 2 pi a^2 rho eta U.
+TEST(Stick, FeelsTheAddedMassOfTheFilmWhenItStarts) {
+    auto solver = disk_in_still_film(0.1, "velocity = [1, 0.5, 0]\nspin = [0, 0, 2]");
+    solver->start({});
+    solver->advance(0.001);
+    const Vec3 impulse = 0.001 * solver->bodies()[0].force;
+    const double exact = 2.0 * kPi * 0.16 * kFilmMass;
+    EXPECT_NEAR(impulse[0] / exact, -1.0, 0.05);
+    EXPECT_NEAR(impulse[1] / exact, -0.5, 0.025);
+    // Turning moves only the film that it covers: half its mass times a^2 times the spin.
+    EXPECT_NEAR(0.001 * solver->bodies()[0].torque[2] / (0.5 * kPi * 0.0256 * kFilmMass * 2.0), -1.0, 0.15);
+}
+
+TEST(FreeDisk, SharesItsMomentumWithTheFilmAroundIt) {
+    const double film = 2.0 * kPi * 0.16 * kFilmMass;
+    for (const double mass : {0.3 * film, 3.0 * film}) {
+        auto solver = disk_in_still_film(0.1, fmt::format("velocity = [1, 0, 0]\nfree = true\nmass = {}", mass));
+        solver->start({});
+        solver->advance(0.001);
+        EXPECT_NEAR(solver->bodies()[0].velocity[0] / (mass / (mass + film)), 1.0, 0.03) << mass;
+        EXPECT_NEAR(solver->bodies()[0].velocity[1], 0.0, 1e-3) << mass;
+    }
+}
+
+TEST(FreeDisk, TurnsWithAFilmThatTurns) {
+    auto solver = disk_in_still_film(0.1, "free = true\nmass = 1e-5",
+                                     "[[vortex]]\ncenter = [0, 0, 0]\nradius = 2.0\ncirculation = 12.566370614359172");
+    solver->start({});
+    // The vorticity is 1/s near the center, so the film turns at half of that there; the disk's own inertia,
+    // mass a^2 / 2, is a twentieth of that of the film that it covers.
+    run_until(*solver, 0.01);
+    EXPECT_NEAR(solver->bodies()[0].spin[2], 0.5, 0.05);
+    EXPECT_LT(norm(solver->bodies()[0].velocity), 0.01);
+}
+
+TEST(FreeDisk, IsCarriedAwayByAStream) {
+    auto solver = solver_of(R"(
+[material]
+kinematic_viscosity = 1e-3
+[[film]]
+shape = "rectangle"
+center = [0, -1, 0]
+u = [4, 0, 0]
+v = [0, 2, 0]
+[[solid]]
+center = [1, 0, 0]
+radius = 0.3
+free = true
+[resolution]
+edge_length = 0.125
+[vortex_particle]
+incompressible = true
+[vortex_particle.stream]
+velocity = [1, 0, 0]
+)");
+    solver->start({});
+    run_until(*solver, 1.0);
+    EXPECT_NEAR(solver->bodies()[0].velocity[0], 1.0, 0.01);
+    EXPECT_NEAR(solver->bodies()[0].center[0], 2.0, 0.02);
+    EXPECT_NEAR(solver->bodies()[0].center[1], 0.0, 0.01);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What takes minutes: where the fate of two Taylor vortices turns, on two meshes [method sheet 12.2].
+// What takes minutes: where the fate of two Taylor vortices turns, on two meshes; leapfrog [method sheet 12.2, 12.3].
 
 #include "swirls.h"
 
@@ -22,6 +22,16 @@ TEST(TaylorVortices, HaveACriticalDistanceThatTheMeshDoesNotMove) {
     RecordProperty("coarse", std::to_string(coarse));
     RecordProperty("fine", std::to_string(fine));
     EXPECT_NEAR(coarse, fine, 0.02) << coarse << " " << fine;
+}
+
+/// Cores of a tenth of the vortices' distance stay apart for three swaps.
+TEST(Leapfrog, SwapsPlacesThreeTimesWhenPointVorticesDo) {
+    const std::vector<double> exact = point_swaps(7.4);
+    ASSERT_EQ(exact.size(), 3u);
+    auto solver = leapfrog(0.04, 1.0 / 64, 0.005);
+    const std::vector<double> found = swaps(*solver, 7.4);
+    ASSERT_EQ(found.size(), 3u);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(found[k] / exact[k], 1.0, 0.05) << k;
 }
 
 }  // namespace

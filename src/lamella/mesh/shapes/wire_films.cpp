@@ -83,18 +83,56 @@ FoamMesh disk(const Vec3& center, const Vec3& normal, double radius, double edge
     return mesh;
 }
 
-FoamMesh rectangle(const Vec3& origin, const Vec3& u, const Vec3& v, double edge_length) {
+namespace {
+
+/// Even steps from 0 to 1.
+std::vector<double> even_ticks(int count) {
+    std::vector<double> ticks;
+    for (int i = 0; i <= count; ++i) ticks.push_back(static_cast<double>(i) / count);
+    return ticks;
+}
+
+/// Steps from 0 to 1 of a side of `length`, shorter around `center`: as many as there are edges along it, where the
+/// edge at x is h(x), each end at a whole number of the integral of 1/h.
+std::vector<double> graded_ticks(double length, double center, double edge_length, const Focus& focus) {
+    constexpr double kGrowth = 0.1;
+    constexpr int kSamples = 20'000;
+    const auto edges_until = [&](int sample) {
+        const double away = std::max(0.0, std::abs(length * (sample + 0.5) / kSamples - center) - focus.radius);
+        return length / kSamples / std::min(edge_length, focus.edge_length + kGrowth * away);
+    };
+    double total = 0.0;
+    for (int k = 0; k < kSamples; ++k) total += edges_until(k);
+    if (!(total < kSamples / 4))
+        throw InputError(fmt::format("edges of {} m around the focus are too short for a side of {} m", focus.edge_length, length));
+    const int count = std::max(1, static_cast<int>(std::lround(total)));
+    std::vector<double> ticks{0.0};
+    double sum = 0.0;
+    for (int k = 0; k < kSamples && static_cast<int>(ticks.size()) < count; ++k) {
+        const double next = sum + edges_until(k) * count / total;
+        const auto wanted = static_cast<double>(ticks.size());
+        if (next >= wanted) ticks.push_back((k + (wanted - sum) / (next - sum)) / kSamples);
+        sum = next;
+    }
+    ticks.push_back(1.0);
+    return ticks;
+}
+
+void require_right_angle(const Vec3& u, const Vec3& v, double edge_length) {
     detail::require_positive(edge_length, "edge length");
     detail::require_positive(norm(cross(u, v)), "area of the rectangle");
     if (std::abs(dot(u, v)) > 1e-9 * norm(u) * norm(v))
         throw InputError("the sides of a rectangle must be at right angles");
-    detail::require_affordable(norm(cross(u, v)), edge_length);
+}
+
+/// Two triangles between any two neighbors of each row of ticks, their diagonals in turn.
+FoamMesh net(const Vec3& origin, const Vec3& u, const Vec3& v, const std::vector<double>& along_u, const std::vector<double>& along_v) {
     FoamMesh mesh = empty_film();
-    const int nu = pieces(norm(u), edge_length), nv = pieces(norm(v), edge_length);
+    const int nu = static_cast<int>(along_u.size()) - 1, nv = static_cast<int>(along_v.size()) - 1;
     const auto at = [&](int i, int j) { return static_cast<VertexId>(j * (nu + 1) + i); };
     for (int j = 0; j <= nv; ++j)
         for (int i = 0; i <= nu; ++i)
-            mesh.add_vertex(origin + (static_cast<double>(i) / nu) * u + (static_cast<double>(j) / nv) * v,
+            mesh.add_vertex(origin + along_u[static_cast<std::size_t>(i)] * u + along_v[static_cast<std::size_t>(j)] * v,
                             i == 0 || i == nu || j == 0 || j == nv);
     for (int j = 0; j < nv; ++j)
         for (int i = 0; i < nu; ++i) {
@@ -108,6 +146,27 @@ FoamMesh rectangle(const Vec3& origin, const Vec3& u, const Vec3& v, double edge
             }
         }
     return mesh;
+}
+
+}  // namespace
+
+FoamMesh rectangle(const Vec3& origin, const Vec3& u, const Vec3& v, double edge_length) {
+    require_right_angle(u, v, edge_length);
+    detail::require_affordable(norm(cross(u, v)), edge_length);
+    return net(origin, u, v, even_ticks(pieces(norm(u), edge_length)), even_ticks(pieces(norm(v), edge_length)));
+}
+
+FoamMesh rectangle(const Vec3& origin, const Vec3& u, const Vec3& v, double edge_length, const Focus& focus) {
+    require_right_angle(u, v, edge_length);
+    detail::require_positive(focus.edge_length, "edge length of the focus");
+    detail::require_affordable(norm(cross(u, v)), edge_length);
+    const auto ticks = [&](const Vec3& side) {
+        const double length = norm(side);
+        return graded_ticks(length, dot(focus.center - origin, side) / length, edge_length, focus);
+    };
+    const std::vector<double> along_u = ticks(u), along_v = ticks(v);
+    detail::require_affordable(static_cast<double>(along_u.size() * along_v.size()), 1.0);
+    return net(origin, u, v, along_u, along_v);
 }
 
 FoamMesh hemisphere(const Vec3& center, const Vec3& axis, double radius, double edge_length) {

@@ -12,6 +12,14 @@ namespace lamella::mesh {
 FoamMesh disk(const Vec3& center, const Vec3& normal, double radius, double edge_length);
 /// Spanned by `u` and `v` [m] from the corner `origin`; the normal is u x v.
 FoamMesh rectangle(const Vec3& origin, const Vec3& u, const Vec3& v, double edge_length);
+/// Where a rectangle's edges are shorter: `edge_length` [m] in rows and columns within `radius` of `center` [m]; beyond,
+/// they grow by a tenth of the distance.
+struct Focus {
+    Vec3 center;
+    double radius = 0.0;
+    double edge_length = 0.0;
+};
+FoamMesh rectangle(const Vec3& origin, const Vec3& u, const Vec3& v, double edge_length, const Focus& focus);
 /// Bulges along `axis`, its rim is a circle around `center`.
 FoamMesh hemisphere(const Vec3& center, const Vec3& axis, double radius, double edge_length);
 /// Between two rings of one radius, `separation` [m] apart along `axis`; region 1 is inside.

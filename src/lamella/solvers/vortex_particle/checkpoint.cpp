@@ -58,6 +58,26 @@ void read_column(sim::StateReader& in, const std::string& name, std::size_t coun
     column.assign(values.begin(), values.end());
 }
 
+/// The vectors of a solid that change.
+template <class Bodies, class Use>
+void each_vector(Bodies& bodies, Use&& use) {
+    for (auto& body : bodies)
+        for (auto* vector : {&body.center, &body.velocity, &body.spin, &body.force, &body.torque}) use(*vector);
+}
+constexpr std::size_t kBodyNumbers = 15;
+
+std::vector<double> state_of(const std::vector<Body>& bodies) {
+    std::vector<double> values;
+    each_vector(bodies, [&](const Vec3& x) { values.insert(values.end(), x.v, x.v + 3); });
+    return values;
+}
+void restore(const std::vector<double>& values, std::vector<Body>& bodies) {
+    std::size_t next = 0;
+    each_vector(bodies, [&](Vec3& x) {
+        for (std::size_t k = 0; k < 3; ++k) x[k] = values[next++];
+    });
+}
+
 }  // namespace
 
 void VortexParticleSolver::save(sim::StateWriter& out) const {
@@ -74,6 +94,10 @@ void VortexParticleSolver::save(sim::StateWriter& out) const {
     out.write_value("steps", steps_);
     out.write_value("step", step_);
     out.write_value("fastest_dilatation", fastest_dilatation_);
+    write_column(out, "solids", state_of(bodies_));
+    out.write_value("ruptured", static_cast<std::int64_t>(ruptured_));
+    out.write_value("liquid_in", liquid_in_);
+    out.write_value("liquid_out", liquid_out_);
     out.write_value("iterations", iterations_);
     out.write_value("reference/step", reference_.step);
     out.write_value("reference/vertices", static_cast<std::int64_t>(reference_.thickness.size()));
@@ -103,7 +127,14 @@ void VortexParticleSolver::load(sim::StateReader& in) {
     time_ = in.read_double("time");
     steps_ = in.read_integer("steps");
     step_ = in.read_double("step");
+    move_bodies(input_.films->solids, time_, 0.0, bodies_);
     fastest_dilatation_ = in.read_double("fastest_dilatation");
+    std::vector<double> solids;
+    read_column(in, "solids", kBodyNumbers * bodies_.size(), solids);
+    restore(solids, bodies_);
+    ruptured_ = in.read_integer("ruptured") != 0;
+    liquid_in_ = in.read_double("liquid_in");
+    liquid_out_ = in.read_double("liquid_out");
     iterations_ = in.read_integer("iterations");
     reference_.step = in.read_double("reference/step");
     const std::int64_t known = in.read_integer("reference/vertices");

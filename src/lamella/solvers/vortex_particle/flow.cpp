@@ -29,12 +29,16 @@ std::vector<std::size_t> first_vertices(const Surface& s) {
     return first;
 }
 
+/// None where film runs out, as into a wide place.
 std::vector<int> potential_unknowns(const Surface& s) {
-    const std::vector<std::size_t> pinned = first_vertices(s);
-    return numbered(s, [&](std::size_t v) { return v == pinned[s.component[v]]; });
+    std::vector<std::size_t> pinned = first_vertices(s);
+    for (std::size_t v = 0; v < s.vertices(); ++v)
+        if (s.lets_out(v)) pinned[s.component[v]] = s.vertices();
+    return numbered(s, [&](std::size_t v) { return s.lets_out(v) || v == pinned[s.component[v]]; });
 }
 
-/// None on outer walls, one for all vertices of the wall around a hole.
+/// None on outer walls, one for all vertices of the wall around a hole; free where film runs out between walls, which
+/// makes it run straight out.
 std::vector<int> stream_unknowns(const Surface& s) {
     std::vector<std::size_t> pinned = first_vertices(s), speaker(s.loops.size(), s.vertices());
     for (const BoundaryLoop& loop : s.loops) pinned[loop.component] = s.vertices();
@@ -45,6 +49,7 @@ std::vector<int> stream_unknowns(const Surface& s) {
     };
     std::vector<int> unknown = numbered(s, [&](std::size_t v) {
         if (s.loop[v] < 0) return v == pinned[s.component[v]];
+        if (s.lets_out(v) && s.place[v] == Place::kInside) return false;
         return !hole(v) || v != speaker[static_cast<std::size_t>(s.loop[v])];
     });
     for (std::size_t v = 0; v < s.vertices(); ++v)
@@ -124,7 +129,8 @@ std::vector<double> FlowSolver::stream_function(const Surface& s,
     for (std::size_t v = 0; v < s.vertices(); ++v) {
         if (s.loop[v] < 0 || met[static_cast<std::size_t>(s.loop[v])] != 0) continue;
         met[static_cast<std::size_t>(s.loop[v])] = 1;
-        right[v] -= hole_circulation[static_cast<std::size_t>(s.loop[v])];
+        const auto l = static_cast<std::size_t>(s.loop[v]);
+        if (!s.loops[l].outer) right[v] -= hole_circulation[l];
     }
     return stream_.solve(s, right, lagging_, iterations_);
 }

@@ -18,6 +18,7 @@ namespace lamella::vortex_particle {
 ///                      circulation around it is what is given (this is the harmonic part of the flow)
 ///     K Phi = -D       walls let nothing through
 ///
+/// Where film runs out at an open end, dPsi/dn = 0 and Phi = 0: it runs straight out, as much as comes.
 /// Where Psi or Phi is free up to a constant, one value of each component is 0.
 class FlowSolver {
 public:

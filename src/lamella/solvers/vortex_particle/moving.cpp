@@ -62,6 +62,11 @@ void VortexParticleSolver::check_moving() const {
     refuse(!films.tensions.empty(), "[[tension]] factors are");
     for (const film::Event& event : films.events)
         refuse(event.kind == film::Event::Kind::kInflate, "[[event]] of kind \"inflate\" is");
+    refuse(norm(options_.stream.velocity) > 0.0, "stream.velocity of films that move is");
+    const auto flies = [](const Vec3& velocity) { return norm(velocity) > 0.0; };
+    refuse(!bodies_.empty() && std::any_of(films.velocity.begin(), films.velocity.end(), flies),
+           "a [[solid]] on bubbles with a velocity is");
+    for (const Body& body : bodies_) refuse(body.free, "a [[solid]] with free = true on films that move is");
     refuse(options_.walls == Walls::kNoSlip, "walls = \"no_slip\" on films that move is");
 }
 

@@ -77,8 +77,7 @@ void VortexParticleSolver::edit_films(const std::function<void()>& edit) {
     const Relaid change = relaid(old, now, maps, events);
     bins_ = rebin(old, now, change, particles_);
     fill_empty_triangles(surface_, particles_, bins_);
-    constexpr std::size_t kMost = 3;  // times as many as at the start
-    thin_out(surface_, kMost * static_cast<std::size_t>(options_.particles_per_triangle), particles_, bins_);
+    merge_crowds(surface_, most_per_triangle(), particles_, bins_);
     fit_areas(surface_, transfer_, bins_, change.touched, particles_);
     balance_circulation(surface_, bins_, particles_);
     follow_velocities(before, change);
@@ -171,7 +170,5 @@ void VortexParticleSolver::apply(const film::Event& event) {
         return skip(fmt::format("regions {} and {} share no film", index(region), index(into)));
     edit_films([&] { moving_->tracker->pop(region, into); });
 }
-
-std::vector<sim::Event> VortexParticleSolver::take_events() { return std::exchange(events_, {}); }
 
 }  // namespace lamella::vortex_particle

@@ -6,6 +6,8 @@
 #include "lamella/solvers/vortex_particle/solids.h"
 #include "lamella/solvers/vortex_particle/vortex_particle_solver.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -35,6 +37,19 @@ std::vector<Value> of_films(const Surface& s, std::size_t vertices, const std::v
     for (std::size_t v = 0; v < vertices; ++v)
         if (area[v] > 0.0) mean[v] *= 1.0 / area[v];
     return mean;
+}
+
+void add_scalars(std::size_t number, const Body& body, std::vector<sim::Scalar>& all) {
+    const auto add = [&](const char* what, const char* unit, const Vec3& value, const char* text) {
+        for (std::size_t k = 0; k < 3; ++k)
+            all.push_back({fmt::format("solid_{}_{}_{}", number, what, "xyz"[k]), unit, value[k], text});
+    };
+    add("force", "N", body.force, "of the film on the solid and the film that it covers, in the last step");
+    add("torque", "N m", body.torque, "about its center, likewise");
+    if (!body.free) return;
+    add("center", "m", body.center, "of the free solid");
+    add("velocity", "m/s", body.velocity, "of the free solid");
+    add("spin", "rad/s", body.spin, "of the free solid");
 }
 
 }  // namespace
@@ -76,7 +91,7 @@ sim::Frame VortexParticleSolver::frame() const {
     fields.push_back({"surfactant_concentration", "mol/m^2", 1, false, of_films(surface_, vertices, flow.surfactant)});
     fields.push_back({"dilatation", "1/s", 1, false, of_films(surface_, vertices, dilatation)});
     if (!input_.films->solids.empty()) {
-        const Cover cover = cover_of(surface_, input_.films->solids, time_);
+        const Cover cover = cover_of(surface_, bodies_);
         std::vector<double> solid(films().faces.size(), 0.0);
         for (std::size_t t = 0; t < surface_.triangles(); ++t) solid[surface_.film[t]] = cover.share[t];
         frame.surface.face_fields.push_back({"solid", "-", 1, false, std::move(solid)});
@@ -146,6 +161,11 @@ std::vector<sim::Scalar> VortexParticleSolver::scalars() const {
         {"most_in_triangle", "-", static_cast<double>(most), "particles"},
     };
     if (moving_) add_film_scalars(all);
+    if (surface_.open()) {
+        all.push_back({"liquid_in", "m^3", liquid_in_, "that the stream has brought"});
+        all.push_back({"liquid_out", "m^3", liquid_out_, "that it has taken"});
+    }
+    for (std::size_t b = 0; b < bodies_.size(); ++b) add_scalars(b, bodies_[b], all);
     return all;
 }
 

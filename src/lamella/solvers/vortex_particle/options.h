@@ -29,6 +29,7 @@ struct StartOptions {
     double thickness_top = 0.0;
     Vec3 up;
     SurfactantProfile surfactant = SurfactantProfile::kUniform;
+    bool swirls_in_balance = false;
 
     template <class Visitor>
     void visit(Visitor&& option) {
@@ -47,6 +48,9 @@ struct StartOptions {
                                                 {"proportional", SurfactantProfile::kProportional},
                                                 {"balanced", SurfactantProfile::kBalanced}}),
                {"proportional: to the thickness; balanced: such that its gradient carries the film's weight"});
+        option("swirls_in_balance", swirls_in_balance,
+               {"true: liquid and surfactant are less in the cores of vortices, as much as holds them together; else they"
+                " thin at once, which sends waves out"});
     }
 };
 
@@ -83,9 +87,26 @@ struct MotionOptions {
     }
 };
 
+/// Film that streams through its frame.
+struct StreamOptions {
+    Vec3 velocity;
+    double sponge = 0.1;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("velocity", velocity, sim::any_number(),
+               {"[0, 0, 0]: the film is closed; else it comes in at the side that this points away from and leaves at the"
+                " opposite one, of a rectangle", "length/time"});
+        option("sponge", sponge, sim::between(0.0, 0.5),
+               {"share of the film's length, before it leaves, in which vortices fade", "-", ""});
+    }
+};
+
 /// [vortex_particle] of a scene.
 struct Options {
     int particles_per_triangle = 10;
+    int most_per_triangle = 0;
+    double rupture_thickness = 0.0;
     Reach transfer = Reach::kHat;
     double kernel_radius = 1.5;
     Tracer tracer = Tracer::kExtrapolated;
@@ -103,12 +124,17 @@ struct Options {
     bool particles_in_frames = false;
     bool moving = false;
     MotionOptions motion;
+    StreamOptions stream;
     StartOptions start;
     NoiseOptions noise;
 
     template <class Visitor>
     void visit(Visitor&& option) {
         option("particles_per_triangle", particles_per_triangle, sim::between(1, 1000), {"at the start", "-", "[Tao24]"});
+        option("most_per_triangle", most_per_triangle, sim::at_least(0),
+               {"more particles than that in a triangle merge; 0: four times particles_per_triangle"});
+        option("rupture_thickness", rupture_thickness, sim::at_least(0.0),
+               {"a film that gets as thin as that bursts, which ends the run; 0: never", "length"});
         option("transfer", transfer, sim::choices<Reach>({{"hat", Reach::kHat}, {"kernel", Reach::kKernel}}),
                {"between particles and vertices; hat: to the corners of the triangle; kernel: to all vertices within"
                 " kernel_radius, as published, which blurs more and costs more"});
@@ -141,6 +167,7 @@ struct Options {
         option("particles_in_frames", particles_in_frames, {"true: frames show the particles too"});
         option("moving", moving, {"true: tension, gas and weight move films; false: they stand still"});
         option.group("motion", motion, "films that move");
+        option.group("stream", stream, "film that comes in at one side and leaves at the other");
         option.group("start", start, "thickness and surfactant at the start");
         option.group("noise", noise, "smooth noise on them");
     }

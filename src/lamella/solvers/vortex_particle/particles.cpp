@@ -22,6 +22,21 @@ Bins sort_by_triangle(Particles& particles, std::size_t triangles) {
     return start;
 }
 
+double remove_gone(Particles& particles) {
+    std::vector<std::size_t> kept;
+    double liquid = 0.0;
+    for (std::size_t p = 0; p < particles.size(); ++p) {
+        if (particles.triangle[p] != kGone) kept.push_back(p);
+        else liquid += particles.volume[p];
+    }
+    if (kept.size() == particles.size()) return 0.0;
+    Particles::for_each_column(particles, [&](const char*, auto& column) {
+        for (std::size_t i = 0; i < kept.size(); ++i) column[i] = column[kept[i]];
+        column.resize(kept.size());
+    });
+    return liquid;
+}
+
 namespace {
 
 /// Appends the half of particle p that goes to the middle of triangle t.
@@ -55,18 +70,59 @@ void fill_empty_triangles(const Surface& s, Particles& particles, Bins& bins) {
     }
 }
 
+namespace {
+
+/// What particle q has goes to p.
+void join(std::size_t p, std::size_t q, Particles& particles) {
+    const double share = particles.volume[q] / (particles.volume[p] + particles.volume[q]);
+    for (std::size_t k = 0; k < 3; ++k)
+        particles.place[p][k] += share * (particles.place[q][k] - particles.place[p][k]);
+    particles.velocity[p] += share * (particles.velocity[q] - particles.velocity[p]);
+    for (auto* column : {&particles.circulation, &particles.volume, &particles.amount, &particles.area}) {
+        (*column)[p] += (*column)[q];
+        (*column)[q] = 0.0;
+    }
+    particles.triangle[q] = kGone;
+}
+
+void thin_out(const Surface& s, std::size_t begin, std::size_t end, std::size_t most, Particles& particles) {
+    std::vector<std::size_t> here(end - begin);
+    std::iota(here.begin(), here.end(), begin);
+    while (here.size() > most) {
+        std::size_t first = 0, second = 1;
+        double nearest = -1.0;
+        for (std::size_t i = 0; i < here.size(); ++i)
+            for (std::size_t j = i + 1; j < here.size(); ++j) {
+                const std::uint32_t t = particles.triangle[here[i]];
+                const double d = squared_norm(s.point(t, particles.place[here[i]]) - s.point(t, particles.place[here[j]]));
+                if (nearest < 0.0 || d < nearest) nearest = d, first = i, second = j;
+            }
+        join(here[first], here[second], particles);
+        here.erase(here.begin() + static_cast<std::ptrdiff_t>(second));
+    }
+}
+
+}  // namespace
+
+void merge_crowds(const Surface& s, std::size_t most, Particles& particles, Bins& bins) {
+    const std::size_t before = particles.size();
+    parallel_blocks(s.triangles(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t)
+            if (bins[t + 1] - bins[t] > most) thin_out(s, bins[t], bins[t + 1], most, particles);
+    });
+    remove_gone(particles);
+    if (particles.size() != before) bins = sort_by_triangle(particles, s.triangles());
+}
+
 Particles spread_particles(const Surface& s, int per_triangle, std::uint64_t seed) {
-    // The plastic number g, g^3 = g + 1: steps of 1/g and 1/g^2 fill a square more evenly than any others known.
-    constexpr double kStepU = 0.75487766624669276, kStepV = 0.56984029099805327;
     Particles particles;
     const auto count = static_cast<std::size_t>(per_triangle);
     Particles::for_each_column(particles, [&](const char*, auto& column) { column.resize(count * s.triangles()); });
     for (std::size_t t = 0; t < s.triangles(); ++t) {
         const RandomBits bits = random_bits(seed, RandomStream::kFilmParticle, 0, t);
+        EvenPoints points(uniform01(bits, 0), uniform01(bits, 1));
         for (std::size_t k = 0; k < count; ++k) {
-            double u = uniform01(bits, 0) + kStepU * static_cast<double>(k);
-            double v = uniform01(bits, 1) + kStepV * static_cast<double>(k);
-            u -= std::floor(u), v -= std::floor(v);
+            auto [u, v] = points.next();
             if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
             const std::size_t p = t * count + k;
             particles.triangle[p] = static_cast<std::uint32_t>(t);

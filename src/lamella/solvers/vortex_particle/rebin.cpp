@@ -163,31 +163,4 @@ void balance_circulation(const Surface& s, const Bins& bins, Particles& particle
             particles.circulation[p] -= surplus[component(t)] / area[component(t)] * particles.area[p];
 }
 
-void thin_out(const Surface& s, std::size_t most, Particles& particles, Bins& bins) {
-    std::vector<std::uint8_t> gone(particles.size(), 0);
-    bool any = false;
-    for (std::size_t t = 0; t < s.triangles(); ++t) {
-        std::size_t count = bins[t + 1] - bins[t];
-        for (std::size_t p = bins[t]; p + 1 < bins[t + 1] && count > most; p += 2, --count) {
-            const double a = particles.area[p], b = particles.area[p + 1], share = a / (a + b);
-            for (std::size_t k = 0; k < 3; ++k)
-                particles.place[p][k] = share * particles.place[p][k] + (1.0 - share) * particles.place[p + 1][k];
-            particles.velocity[p] = share * particles.velocity[p] + (1.0 - share) * particles.velocity[p + 1];
-            for (std::vector<double>* column :
-                 {&particles.circulation, &particles.volume, &particles.amount, &particles.area})
-                (*column)[p] += (*column)[p + 1];
-            gone[p + 1] = 1;
-            any = true;
-        }
-    }
-    if (!any) return;
-    Particles::for_each_column(particles, [&](const char*, auto& column) {
-        std::size_t kept = 0;
-        for (std::size_t p = 0; p < column.size(); ++p)
-            if (gone[p] == 0) column[kept++] = column[p];
-        column.resize(kept);
-    });
-    bins = sort_by_triangle(particles, s.triangles());
-}
-
 }  // namespace lamella::vortex_particle

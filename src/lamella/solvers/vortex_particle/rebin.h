@@ -48,7 +48,4 @@ void fit_areas(const Surface& s,
 /// evenly over its area, with the opposite sign.
 void balance_circulation(const Surface& s, const Bins& bins, Particles& particles);
 
-/// Joins pairs of particles of a triangle until it has no more than `most`.
-void thin_out(const Surface& s, std::size_t most, Particles& particles, Bins& bins);
-
 }  // namespace lamella::vortex_particle

@@ -1,21 +1,62 @@
 #include "lamella/solvers/vortex_particle/solids.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lamella::vortex_particle {
+namespace {
 
-Cover cover_of(const Surface& s, std::span<const film::Solid> solids, double time) {
-    Cover cover{std::vector<double>(s.triangles(), 0.0), std::vector<Vec3>(s.triangles())};
+constexpr std::array<double, 3> kMiddle{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
+
+/// Of the change that would do it if the film could be compressed. Getting around the solid takes half of that away in
+/// the whole of a disk and nothing of the smallest swirls: this makes both lacks equal, a third.
+constexpr double kOvershoot = 4.0 / 3.0;
+
+Vec3 along(const Vec3& u, const Vec3& normal) { return u - dot(u, normal) * normal; }
+
+}  // namespace
+
+std::vector<Body> bodies_at_start(std::span<const film::Solid> solids) {
+    std::vector<Body> bodies;
+    for (const film::Solid& solid : solids)
+        bodies.push_back({.radius = solid.radius,
+                          .free = solid.free,
+                          .mass = solid.mass,
+                          .center = solid.center,
+                          .velocity = solid.velocity,
+                          .spin = solid.spin,
+                          .force = {},
+                          .torque = {}});
+    move_bodies(solids, 0.0, 0.0, bodies);
+    return bodies;
+}
+
+void move_bodies(std::span<const film::Solid> solids, double time, double ahead, std::span<Body> bodies) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        Body& body = bodies[b];
+        if (body.free) {
+            body.center += ahead * body.velocity;
+            continue;
+        }
+        const film::Solid& solid = solids[b];
+        const bool moves = solid.moves(time);
+        body.in_film = solid.in_film(time);
+        body.center = solid.center_at(time);
+        body.velocity = moves ? solid.velocity : Vec3{};
+        body.spin = moves ? solid.spin : Vec3{};
+    }
+}
+
+Cover cover_of(const Surface& s, std::span<const Body> bodies) {
+    Cover cover{std::vector<double>(s.triangles(), 0.0), std::vector<std::int32_t>(s.triangles(), -1)};
     for (std::size_t t = 0; t < s.triangles(); ++t) {
-        const Vec3 x = s.point(t, {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0});
-        for (const film::Solid& solid : solids) {
-            const Vec3 arm = x - solid.center_at(time);
-            const double share = std::clamp((solid.radius - norm(arm)) / s.mean_edge, 0.0, 1.0);
+        const Vec3 x = s.point(t, kMiddle);
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            if (!bodies[b].in_film) continue;
+            const double share = std::clamp((bodies[b].radius - norm(x - bodies[b].center)) / s.edge_length(t), 0.0, 1.0);
             if (share <= cover.share[t]) continue;
-            Vec3 u = solid.moves(time) ? solid.velocity + cross(solid.spin, arm) : Vec3{};
-            u -= dot(u, s.normal[t]) * s.normal[t];
             cover.share[t] = share;
-            cover.velocity[t] = u;
+            cover.body[t] = static_cast<std::int32_t>(b);
         }
     }
     return cover;
@@ -24,8 +65,70 @@ Cover cover_of(const Surface& s, std::span<const film::Solid> solids, double tim
 double fastest(std::span<const film::Solid> solids) {
     double speed = 0.0;
     for (const film::Solid& solid : solids)
-        speed = std::max(speed, norm(solid.velocity) + norm(solid.spin) * solid.radius);
+        if (!solid.free) speed = std::max(speed, norm(solid.velocity) + norm(solid.spin) * solid.radius);
     return speed;
+}
+
+Grip::Grip(const Surface& s, Cover cover, std::vector<double> mass, std::span<Body> bodies, const Vec3& gravity, double dt)
+    : surface_(s),
+      cover_(std::move(cover)),
+      mass_(std::move(mass)),
+      bodies_(bodies),
+      gravity_(gravity),
+      dt_(dt),
+      before_(bodies.begin(), bodies.end()),
+      given_(bodies.size()),
+      turned_(bodies.size()) {
+    for (std::uint32_t t = 0; t < s.triangles(); ++t)
+        if (cover_.body[t] >= 0) covered_.push_back(t);
+}
+
+/// The velocities of free bodies for which momentum is kept, given what the film has taken and this `u` of it.
+void Grip::let_follow(std::span<const Vec3> u) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        Body& body = bodies_[b];
+        if (!body.free) continue;
+        double film = 0.0, inertia = 0.0;
+        Vec3 momentum, turning, n;
+        for (const std::uint32_t t : covered_) {
+            if (cover_.body[t] != static_cast<std::int32_t>(b)) continue;
+            const double m = kOvershoot * cover_.share[t] * mass_[t];
+            const Vec3 arm = surface_.point(t, kMiddle) - body.center;
+            film += m;
+            inertia += m * squared_norm(arm);
+            momentum += m * u[t];
+            turning += m * cross(arm, u[t] - body.velocity);
+            n += m * surface_.normal[t];
+        }
+        if (film == 0.0) continue;
+        n *= 1.0 / norm(n);
+        const Vec3 pull = along(gravity_, n);
+        body.velocity = (body.mass * (before_[b].velocity + dt_ * pull) - given_[b] + momentum) / (body.mass + film);
+        const double own = 0.5 * body.mass * body.radius * body.radius;
+        body.spin = (dot(own * before_[b].spin - turned_[b] + turning, n) / (own + inertia)) * n;
+    }
+}
+
+double Grip::sweep(std::span<const Vec3> u, std::vector<Vec3>& change) {
+    let_follow(u);
+    double worst = 0.0;
+    for (const std::uint32_t t : covered_) {
+        const auto b = static_cast<std::size_t>(cover_.body[t]);
+        const Vec3 x = surface_.point(t, kMiddle);
+        const Vec3 lack = along(bodies_[b].velocity_at(x), surface_.normal[t]) - u[t];
+        change[t] = kOvershoot * cover_.share[t] * lack;
+        given_[b] += mass_[t] * change[t];
+        turned_[b] += mass_[t] * cross(x - bodies_[b].center, change[t]);
+        if (cover_.share[t] == 1.0) worst = std::max(worst, norm(lack));
+    }
+    return worst;
+}
+
+void Grip::finish() {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        bodies_[b].force = given_[b] / -dt_;
+        bodies_[b].torque = turned_[b] / -dt_;
+    }
 }
 
 }  // namespace lamella::vortex_particle

@@ -1,24 +1,75 @@
 #pragma once
 
-// Solid balls in a film: where they are the film moves with them.
+// Solid balls in a film: where they are the film moves with them, and pushes back.
 
 #include "lamella/film/problem.h"
 #include "lamella/solvers/vortex_particle/surface.h"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace lamella::vortex_particle {
 
-/// What holds each triangle: a share between 0 and 1 that a solid covers, over a layer of one edge at its surface, and the
-/// solid's velocity along the film there.
+/// A solid at one moment.
+struct Body {
+    double radius = 0.0;   ///< [m]
+    bool in_film = true;
+    bool free = false;
+    double mass = 0.0;     ///< beyond that of the film that it covers [kg]
+    Vec3 center;           ///< [m]
+    Vec3 velocity, spin;   ///< [m/s], [rad/s]
+    /// What the film did to it in the last step, the film that it covers counted with the solid; the torque about its
+    /// center [N], [N m].
+    Vec3 force, torque;
+
+    Vec3 velocity_at(const Vec3& x) const { return velocity + cross(spin, x - center); }
+};
+
+std::vector<Body> bodies_at_start(std::span<const film::Solid> solids);
+/// Puts those that move as they are told where they are at `time`; the others `ahead` in time by their velocity [s].
+void move_bodies(std::span<const film::Solid> solids, double time, double ahead, std::span<Body> bodies);
+
+/// The share of each triangle that a solid covers, 0 to 1 over a layer of one edge inside its surface, and which solid:
+/// where several overlap the one that covers more.
 struct Cover {
     std::vector<double> share;
-    std::vector<Vec3> velocity;  ///< [m/s]; where solids overlap, of the one that covers more
+    std::vector<std::int32_t> body;  ///< -1: none
 };
-Cover cover_of(const Surface& s, std::span<const film::Solid> solids, double time);
+Cover cover_of(const Surface& s, std::span<const Body> bodies);
 
-/// The largest speed of any solid's surface [m/s].
+/// The largest speed of any solid's surface that is told [m/s].
 double fastest(std::span<const film::Solid> solids);
+
+/// One step's hold of solids on the film. Momentum that they give to it they lose: free ones change their velocity in each
+/// sweep such that they have given what they lost,
+///
+///     mass (v - v_before - dt g) = -sum over sweeps of the integral of share rho eta (v - u)
+///
+/// with the film's weight in the equation for stability whatever the mass.
+class Grip {
+public:
+    /// @param mass  of the film in each triangle [kg]
+    Grip(const Surface& s, Cover cover, std::vector<double> mass, std::span<Body> bodies, const Vec3& gravity, double dt);
+
+    /// What has to be added to `u` of triangles so that the film moves with the solids, where they cover it.
+    /// @returns the largest speed that a whole triangle lacks [m/s]
+    double sweep(std::span<const Vec3> u, std::vector<Vec3>& change);
+    /// Writes forces and torques.
+    void finish();
+
+private:
+    void let_follow(std::span<const Vec3> u);
+
+    const Surface& surface_;
+    Cover cover_;
+    std::vector<double> mass_;
+    std::span<Body> bodies_;
+    Vec3 gravity_;
+    double dt_;
+    std::vector<Body> before_;
+    std::vector<Vec3> given_, turned_;  ///< momentum and angular momentum to the film [kg m/s], [kg m^2/s]
+    std::vector<std::uint32_t> covered_;
+};
 
 }  // namespace lamella::vortex_particle

@@ -33,27 +33,6 @@ double rossby_haurwitz(const film::Vortex& vortex, const Vec3& from_center) {
     return -20.0 * vortex.circulation * z * (x * x * x - 3.0 * x * y * y) / (radius * radius);
 }
 
-/// Height along the film's up direction, 0 at the lowest vertex and 1 at the highest.
-class Height {
-public:
-    Height(const Surface& s, const film::Problem& films, const StartOptions& start) {
-        up_ = norm(start.up) > 0.0 ? start.up : -films.material.gravity;
-        if (norm(up_) == 0.0) up_ = {{0.0, 1.0, 0.0}};
-        low_ = std::numeric_limits<double>::infinity();
-        double high = -low_;
-        for (const Vec3& x : s.position) {
-            low_ = std::min(low_, dot(x, up_));
-            high = std::max(high, dot(x, up_));
-        }
-        range_ = high - low_;
-    }
-    double of(const Vec3& x) const { return range_ > 0.0 ? (dot(x, up_) - low_) / range_ : 0.5; }
-
-private:
-    Vec3 up_;
-    double low_ = 0.0, range_ = 0.0;
-};
-
 /// Values of particles are corrected until they put `target` on the vertices.
 /// @param change  change(p, relative surplus to be made up for, density [per area] to be added)
 void fit_circulation(const Surface& s, const Transfer& transfer, const Bins& bins, const std::vector<double>& target,
@@ -79,46 +58,111 @@ void fit_areas(const Surface& s, const Transfer& transfer, const Bins& bins, Par
     for (double& a : particles.area) a *= s.total_area / sum;
 }
 
-double thickness_at(const Height& height, const film::Problem& films, const StartOptions& start, const Vec3& x) {
-    const double bottom = start.thickness_bottom > 0.0 ? start.thickness_bottom : films.material.thickness;
-    const double top = start.thickness_top > 0.0 ? start.thickness_top : films.material.thickness;
-    switch (start.thickness) {
-        case ThicknessProfile::kLinear: return bottom + height.of(x) * (top - bottom);
-        case ThicknessProfile::kStep: return height.of(x) < 0.5 ? bottom : top;
-        case ThicknessProfile::kCosine: return bottom + 0.5 * (1.0 - std::cos(kPi * height.of(x))) * (top - bottom);
-        case ThicknessProfile::kUniform: break;
-    }
-    return films.material.thickness;
-}
-
-/// Gamma at vertices with (2 R T / rho) grad Gamma = eta g, as far as a gradient can be, and the wanted mean.
-std::vector<double> balanced_surfactant(const Surface& s, const film::Problem& films, std::span<const double> volume,
-                                        std::span<const double> area) {
-    std::vector<Vec3> weight(s.triangles());
+/// What has to be added to Gamma at vertices so that (2 R T / rho) grad Gamma = eta a, as far as a gradient can be; its
+/// mean over each component is 0.
+/// @param acceleration  a, of triangles, along the film [m/s^2]
+std::vector<double> pulling_surfactant(const Surface& s, const FlowSolver& flow, const film::Problem& films, const Deposit& sum,
+                                       std::vector<Vec3> acceleration) {
+    const double strength = 2.0 * film::thermal_energy(films.material) / films.material.liquid_density;
     for (std::size_t t = 0; t < s.triangles(); ++t) {
         double thickness = 0.0;
-        for (const std::uint32_t v : s.corner[t]) thickness += volume[v] / (3.0 * s.vertex_share[v] * area[v]);
-        const Vec3& g = films.material.gravity;
-        weight[t] = thickness * (g - dot(g, s.normal[t]) * s.normal[t]);
+        for (const std::uint32_t v : s.corner[t]) thickness += sum.volume[v] / (3.0 * s.vertex_share[v] * sum.area[v]);
+        acceleration[t] *= thickness / strength;
     }
-    std::vector<double> surfactant = FlowSolver(s).potential(s, divergence(s, weight));
-    const double strength = 2.0 * film::thermal_energy(films.material) / films.material.liquid_density;
-    std::vector<double> sum(s.components, 0.0), part(s.components, 0.0);
+    std::vector<double> surfactant = flow.potential(s, divergence(s, acceleration));
+    std::vector<double> total(s.components, 0.0), part(s.components, 0.0);
     for (std::size_t v = 0; v < s.vertices(); ++v) {
-        surfactant[v] /= strength;
-        sum[s.component[v]] += surfactant[v] * s.vertex_area[v];
+        total[s.component[v]] += surfactant[v] * s.vertex_area[v];
         part[s.component[v]] += s.vertex_area[v];
     }
-    for (std::size_t v = 0; v < s.vertices(); ++v) {
-        surfactant[v] += film::start_surfactant(films.material) - sum[s.component[v]] / part[s.component[v]];
-        if (!(surfactant[v] > 0.0))
-            throw InputError("vortex_particle.start.surfactant = \"balanced\": there is not enough surfactant to carry "
-                             "the film; raise material.surfactant, or take a lower or thinner film");
-    }
+    for (std::size_t v = 0; v < s.vertices(); ++v) surfactant[v] -= total[s.component[v]] / part[s.component[v]];
     return surfactant;
 }
 
+std::vector<Vec3> gravity_along(const Surface& s, const Vec3& g) {
+    std::vector<Vec3> along(s.triangles());
+    for (std::size_t t = 0; t < s.triangles(); ++t) along[t] = g - dot(g, s.normal[t]) * s.normal[t];
+    return along;
+}
+
+/// -(u . grad) u of the flow that the scene's vortices make in a film that keeps its area.
+std::vector<Vec3> outward_pull(const Surface& s, const FlowSolver& flow, std::span<const film::Vortex> vortices) {
+    const std::vector<Vec3> u = rotated_gradient(
+        s, flow.stream_function(s, vertex_circulation(s, vortices), hole_circulation(s, vortices)));
+    const std::vector<Vec3> smooth = vertex_velocity(s, u);
+    std::vector<Vec3> pull(s.triangles());
+    for (std::size_t t = 0; t < s.triangles(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k) pull[t] -= dot(u[t], s.hat_slope[t][k]) * smooth[s.corner[t][k]];
+        pull[t] -= dot(pull[t], s.normal[t]) * s.normal[t];
+    }
+    return pull;
+}
+
+/// Gives particles the surfactant that carries the film's weight, or liquid and surfactant that hold swirls together: thinner
+/// in their cores [method sheet 5.10].
+void balance(const Surface& s, const Transfer& transfer, const Bins& bins, const film::Problem& films,
+             const StartOptions& options, Particles& particles) {
+    const bool weight = options.surfactant == SurfactantProfile::kBalanced;
+    if (!weight && !options.swirls_in_balance) return;
+    const FlowSolver flow(s);
+    const Deposit sum = transfer.deposit(s, particles, bins);
+    const double rest = film::start_surfactant(films.material);
+    const auto scaled = [&](const std::vector<double>& more, const auto& from, bool liquid_too) {
+        std::vector<double> factor(s.vertices());
+        for (std::size_t v = 0; v < factor.size(); ++v) {
+            factor[v] = (from(v) + more[v]) / from(v);
+            if (!(factor[v] > 0.0))
+                throw InputError("vortex_particle.start: there is not enough surfactant to carry the film or to hold its "
+                                 "vortices together; raise material.surfactant, or take a lower, thinner or slower film");
+        }
+        const std::vector<double> at = transfer.gather(s, particles, factor);
+        for (std::size_t p = 0; p < particles.size(); ++p) {
+            particles.amount[p] *= at[p];
+            if (liquid_too) particles.volume[p] *= at[p];
+        }
+    };
+    if (weight)
+        scaled(pulling_surfactant(s, flow, films, sum, gravity_along(s, films.material.gravity)), [&](std::size_t) { return rest; },
+               false);
+    if (options.swirls_in_balance)
+        scaled(pulling_surfactant(s, flow, films, sum, outward_pull(s, flow, films.vortices)),
+               [&](std::size_t v) { return sum.amount[v] / sum.area[v]; }, true);
+}
+
 }  // namespace
+
+Start::Start(const Surface& s, const film::Problem& films, const StartOptions& options)
+    : options_(options),
+      common_(films.material.thickness),
+      bottom_(options.thickness_bottom > 0.0 ? options.thickness_bottom : common_),
+      top_(options.thickness_top > 0.0 ? options.thickness_top : common_),
+      rest_surfactant_(film::start_surfactant(films.material)),
+      up_(norm(options.up) > 0.0 ? options.up : -films.material.gravity),
+      low_(std::numeric_limits<double>::infinity()) {
+    if (norm(up_) == 0.0) up_ = {{0.0, 1.0, 0.0}};
+    double high = -low_;
+    for (const Vec3& x : s.position) {
+        low_ = std::min(low_, dot(x, up_));
+        high = std::max(high, dot(x, up_));
+    }
+    range_ = high - low_;
+}
+
+double Start::thickness(const Vec3& x) const {
+    const double height = range_ > 0.0 ? (dot(x, up_) - low_) / range_ : 0.5;  // of the film's, 0 to 1
+    switch (options_.thickness) {
+        case ThicknessProfile::kLinear: return bottom_ + height * (top_ - bottom_);
+        case ThicknessProfile::kStep: return height < 0.5 ? bottom_ : top_;
+        case ThicknessProfile::kCosine: return bottom_ + 0.5 * (1.0 - std::cos(kPi * height)) * (top_ - bottom_);
+        case ThicknessProfile::kUniform: break;
+    }
+    return common_;
+}
+
+double Start::surfactant(const Vec3& x) const {
+    return options_.surfactant == SurfactantProfile::kProportional ? rest_surfactant_ * thickness(x) / common_
+                                                                   : rest_surfactant_;
+}
 
 double vorticity(std::span<const film::Vortex> vortices, const Vec3& x, const Vec3& n) {
     double sum = 0.0;
@@ -190,29 +234,25 @@ Particles start_particles(const Surface& s,
     Particles particles = spread_particles(s, options.particles_per_triangle, seed);
     const Bins bins = sort_by_triangle(particles, s.triangles());
     if (options.transfer == Reach::kHat) fit_areas(s, transfer, bins, particles);
-    const Height height(s, films, options.start);
+    const Start fresh(s, films, options.start);
     const double frequency = options.noise.frequency > 0.0 ? options.noise.frequency : 8.0 / std::sqrt(s.total_area);
     const auto noisy = [&](double amplitude, const Vec3& x, std::uint64_t which) {
         return amplitude == 0.0 ? 1.0
                                 : std::max(0.1, 1.0 + amplitude * film::gradient_noise(frequency * x, 2 * seed + which, options.noise.octaves));
     };
-    const double surfactant = film::start_surfactant(films.material);
+    const double surfactant = fresh.rest_surfactant();
     for (std::size_t p = 0; p < particles.size(); ++p) {
         const std::size_t t = particles.triangle[p];
         const Vec3 x = s.point(t, particles.place[p]);
-        const double profile = thickness_at(height, films, options.start, x), share_of_film = s.share[t];
-        particles.volume[p] = share_of_film * particles.area[p] * profile * noisy(options.noise.thickness, x, 0);
+        const double share_of_film = s.share[t];
+        particles.volume[p] = share_of_film * particles.area[p] * fresh.thickness(x) * noisy(options.noise.thickness, x, 0);
         const double share = options.start.surfactant == SurfactantProfile::kProportional
                                  ? particles.volume[p] / (share_of_film * particles.area[p]) / films.material.thickness
                                  : 1.0;
         particles.amount[p] = particles.area[p] * surfactant * share * noisy(options.noise.surfactant, x, 1);
         particles.circulation[p] = particles.area[p] * vorticity(films.vortices, x, s.normal[t]);
     }
-    if (options.start.surfactant == SurfactantProfile::kBalanced) {
-        const Deposit sum = transfer.deposit(s, particles, bins);
-        const std::vector<double> at = transfer.gather(s, particles, balanced_surfactant(s, films, sum.volume, sum.area));
-        for (std::size_t p = 0; p < particles.size(); ++p) particles.amount[p] *= at[p] / surfactant;
-    }
+    balance(s, transfer, bins, films, options.start, particles);
     if (!films.vortices.empty())
         fit_circulation(s, transfer, bins, vertex_circulation(s, films.vortices), particles);
     return particles;

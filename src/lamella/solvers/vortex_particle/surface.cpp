@@ -116,14 +116,43 @@ std::size_t measure(Surface& s) {
     return s.triangles();
 }
 
+/// The direction out of the film, along it, at the edge opposite to corner k.
+Vec3 outward(const Surface& s, std::size_t t, std::size_t k) { return -s.hat_slope[t][k] / norm(s.hat_slope[t][k]); }
+
+/// Ends of the film that the stream crosses; along all others it has to run.
+void find_openings(Surface& s, const Vec3& stream) {
+    constexpr double kCrosses = 0.5, kAlong = 1e-6;  // cosines
+    const Vec3 ahead = stream / norm(stream);
+    s.opening.assign(s.triangles(), {Opening::kNone, Opening::kNone, Opening::kNone});
+    s.vertex_opening.assign(s.vertices(), Opening::kNone);
+    for (std::size_t t = 0; t < s.triangles(); ++t) {
+        if (std::abs(dot(ahead, s.normal[t])) > kAlong)
+            throw InputError("vortex_particle.stream.velocity does not lie in the film, which has to be flat");
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (s.neighbor[t][k] != kNoNeighbor) continue;
+            const double cosine = dot(ahead, outward(s, t, k));
+            if (std::abs(cosine) < kAlong) continue;
+            if (std::abs(cosine) < kCrosses)
+                throw InputError("vortex_particle.stream.velocity runs into a wall of the film at a small angle; streams are "
+                                 "built for rectangles, along two of their sides");
+            s.opening[t][k] = cosine > 0.0 ? Opening::kOutflow : Opening::kInflow;
+            for (const std::uint32_t v : {s.corner[t][(k + 1) % 3], s.corner[t][(k + 2) % 3]})
+                s.vertex_opening[v] = std::max(s.vertex_opening[v], s.opening[t][k]);
+        }
+    }
+    for (std::size_t v = 0; v < s.vertices(); ++v)
+        if (s.loop[v] >= 0 && !s.loops[static_cast<std::size_t>(s.loop[v])].outer)
+            throw InputError("vortex_particle.stream: the film has a hole, around which streams are not built; put a [[solid]] there");
+}
+
 void find_walls(Surface& s, Walls walls) {
     constexpr double kStraight = 0.9;  // cosine: walls that turn by more than 26 degrees make a corner
     s.place.assign(s.vertices(), Place::kInside);
     s.wall_normal.assign(s.vertices(), {});
     for (std::size_t t = 0; t < s.triangles(); ++t)
         for (std::size_t k = 0; k < 3; ++k) {
-            if (s.neighbor[t][k] != kNoNeighbor) continue;
-            const Vec3 out = -s.hat_slope[t][k] / norm(s.hat_slope[t][k]);
+            if (s.neighbor[t][k] != kNoNeighbor || s.opening_of(t, k) != Opening::kNone) continue;
+            const Vec3 out = outward(s, t, k);
             for (const std::uint32_t v : {s.corner[t][(k + 1) % 3], s.corner[t][(k + 2) % 3]}) {
                 const bool first = s.place[v] == Place::kInside;
                 const bool slips = walls == Walls::kSlip && (first || dot(s.wall_normal[v], out) > kStraight);
@@ -139,7 +168,7 @@ void find_walls(Surface& s, Walls walls) {
 
 }  // namespace
 
-Surface surface_of(const mesh::FoamMesh& mesh, Walls walls) {
+Surface surface_of(const mesh::FoamMesh& mesh, Walls walls, const Vec3& stream) {
     if (mesh.periodic()) throw InputError("vortex_particle: films in a periodic box are for solver equilibrium");
     Surface s;
     lay_leaves(mesh, s);
@@ -147,6 +176,7 @@ Surface surface_of(const mesh::FoamMesh& mesh, Walls walls) {
     find_components_and_loops(s);
     const std::size_t flat = measure(s);
     if (flat != s.triangles()) throw InputError(fmt::format("vortex_particle: triangle {} of the film has no area", flat));
+    if (norm(stream) > 0.0) find_openings(s, stream);
     find_walls(s, walls);
     return s;
 }

@@ -6,6 +6,7 @@
 #include "lamella/mesh/foam_mesh.h"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -30,7 +31,14 @@ enum class Place : std::uint8_t {
     kStill,   ///< no flow: on a wall without slip, or where two walls meet at an angle
 };
 
-/// One closed curve of walls.
+/// What lies beyond the end of a film.
+enum class Opening : std::uint8_t {
+    kNone,  ///< a wall, or more film
+    kInflow,
+    kOutflow,
+};
+
+/// One closed curve of walls and openings.
 struct BoundaryLoop {
     std::uint32_t component;
     double length = 0.0;  ///< [m]
@@ -58,6 +66,9 @@ struct Surface {
     std::vector<std::uint32_t> region;                  ///< the bubble around which it closes, or kNoRegion
     std::vector<std::uint32_t> partner;                 ///< the other leaf of the same film, or kNoPartner
     std::vector<double> share;                          ///< of the film: 1/2 where it has two leaves, else 1
+    // Empty in a film that nothing streams through.
+    std::vector<std::array<Opening, 3>> opening;  ///< of the edge opposite to corner k
+    std::vector<Opening> vertex_opening;          ///< of each vertex; where inflow meets outflow, outflow
 
     // Where it lies.
     std::vector<Vec3> position;
@@ -82,6 +93,11 @@ struct Surface {
     Vec3 edge(std::size_t t, std::size_t k) const {
         return position[corner[t][(k + 2) % 3]] - position[corner[t][(k + 1) % 3]];
     }
+    /// Of an equilateral triangle of its area [m].
+    double edge_length(std::size_t t) const { return std::sqrt(2.3094010767585034 * area[t]); }  // 4 / sqrt(3)
+    bool open() const { return !opening.empty(); }
+    Opening opening_of(std::size_t t, std::size_t k) const { return open() ? opening[t][k] : Opening::kNone; }
+    bool lets_out(std::size_t v) const { return open() && vertex_opening[v] == Opening::kOutflow; }
     Vec3 point(std::size_t t, const std::array<double, 3>& b) const {
         return b[0] * position[corner[t][0]] + b[1] * position[corner[t][1]] + b[2] * position[corner[t][2]];
     }
@@ -91,8 +107,11 @@ struct Surface {
 enum class Walls { kSlip, kNoSlip };
 
 /// In leaves: see leaves.h.
-/// @throws InputError  films without bubbles that meet in a triple line or cannot be oriented, or that fill space
-Surface surface_of(const mesh::FoamMesh& mesh, Walls walls = Walls::kSlip);
+/// @param stream  the velocity with which film runs through it [m/s], in where it points into the film and out where it
+///                points out; 0: it is closed
+/// @throws InputError  films without bubbles that meet in a triple line or cannot be oriented, or that fill space; a
+///                     stream that does not run along a flat film and its walls
+Surface surface_of(const mesh::FoamMesh& mesh, Walls walls = Walls::kSlip, const Vec3& stream = {});
 
 /// Where the surface lies when the vertices of the films' mesh have moved.
 /// @throws NumericalError  a triangle has lost its area

@@ -74,7 +74,7 @@ void cross_edge(const Surface& s, Spot& spot, std::size_t k, Vec3& displacement)
 
 }  // namespace
 
-void walk(const Surface& s, Spot& spot, Vec3 displacement) {
+bool walk(const Surface& s, Spot& spot, Vec3 displacement) {
     constexpr int kMostEdges = 60;
     for (int edge = 0; edge < kMostEdges; ++edge) {
         const std::size_t t = spot.triangle;
@@ -92,6 +92,7 @@ void walk(const Surface& s, Spot& spot, Vec3 displacement) {
         normalize(spot.place);
         displacement *= 1.0 - share;
         if (s.neighbor[t][out] == kNoNeighbor) {
+            if (s.opening_of(t, out) == Opening::kOutflow) return false;
             const Vec3 wall = s.edge(t, out);
             displacement = (dot(displacement, wall) / squared_norm(wall)) * wall;
             // At the end of this stretch of wall the next one decides, from the triangle that it belongs to.
@@ -105,6 +106,7 @@ void walk(const Surface& s, Spot& spot, Vec3 displacement) {
         cross_edge(s, spot, out, displacement);
     }
     normalize(spot.place);
+    return true;
 }
 
 void trace(const Surface& s, std::span<const Vec3> velocity, double dt, Particles& particles) {
@@ -129,11 +131,12 @@ void trace(const Surface& s, std::span<const Vec3> velocity, double dt, Particle
         for (std::size_t j = 0; j < 3; ++j) mean[j] = (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]) / 6.0;
         Spot spot = start;
         const Place3 near = ahead(start.place, dt, mean);
+        bool stays = true;
         if (inside(near)) spot.place = near;
-        else walk(s, spot, dt * vector_of(s, t, mean));
+        else stays = walk(s, spot, dt * vector_of(s, t, mean));
         normalize(spot.place);
         particles.velocity[p] = turned(particles.velocity[p], s.normal[t], s.normal[spot.triangle]);
-        particles.triangle[p] = spot.triangle;
+        particles.triangle[p] = stays ? spot.triangle : kGone;
         particles.place[p] = spot.place;
     });
 }

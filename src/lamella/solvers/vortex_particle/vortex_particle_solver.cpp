@@ -49,11 +49,13 @@ VortexParticleSolver::VortexParticleSolver(const Options& options, const sim::So
       input_(input),
       surfactant_strength_(2.0 * film::thermal_energy(films_of(input).material) / input.films->material.liquid_density),
       viscosity_(film::film_viscosity(input.films->material)),
-      surface_(surface_of(input.films->mesh, options.walls)),
+      surface_(surface_of(input.films->mesh, options.walls, options.stream.velocity)),
+      stream_(surface_, *input.films, options, input.seed),
       transfer_(surface_, options.transfer, options.kernel_radius * surface_.longest_edge),
       flow_solver_(surface_),
       diffusion_(surface_),
-      compression_(surface_) {
+      compression_(surface_),
+      bodies_(bodies_at_start(input.films->solids)) {
     film::start_surfactant(input_.films->material);
     if (options_.walls == Walls::kNoSlip && viscosity_ == 0.0)
         throw InputError("vortex_particle.walls = \"no_slip\" needs material.kinematic_viscosity or surface_viscosity");
@@ -65,6 +67,10 @@ VortexParticleSolver::VortexParticleSolver(const Options& options, const sim::So
         if (wire.moves() || (wire.ring && wire.ring->blow != 0.0))
             throw InputError("vortex_particle: wires that move or blow are not built yet");
     if (options_.moving) check_moving();
+    for (const Body& body : bodies_)
+        for (const Vec3& n : surface_.normal)
+            if (body.free && dot(n, surface_.normal[0]) < 1.0 - 1e-9)
+                throw InputError("vortex_particle: a solid with free = true on a curved film is not built yet");
     take_shape();
 }
 
@@ -104,6 +110,7 @@ sim::StepReport VortexParticleSolver::advance(double time_limit) {
     const double dt = choose_step(left);
     if (moving_) drift(0.5 * dt, {&velocity_});
     const MeshFlow before = particles_to_mesh();
+    look_for_rupture(before);
     MeshFlow flow = before;
     drag(dt, flow);
     drive_circulation(dt, flow);
@@ -111,7 +118,7 @@ sim::StepReport VortexParticleSolver::advance(double time_limit) {
     hold_walls(flow);
     diffuse(dt, flow);
     recover_velocity(flow);
-    obey_solids(time_ + dt, flow);
+    obey_solids(dt, flow);
     mesh_to_particles(dt, before, flow, dilatation);
     if (moving_) drift(0.5 * dt, {&velocity_, &flow.velocity});
     move_particles(dt, flow);
@@ -126,17 +133,19 @@ sim::StepReport VortexParticleSolver::advance(double time_limit) {
 
 /// Equal steps until the limit, none longer than speed and compression allow.
 double VortexParticleSolver::choose_step(double left) const {
-    double fastest = 0.0;
-    for (const Vec3& u : velocity_) fastest = std::max(fastest, squared_norm(u));
-    fastest = std::max(std::sqrt(fastest), vortex_particle::fastest(input_.films->solids));
+    double crossings = 0.0;  // of edges per time
+    for (std::size_t t = 0; t < velocity_.size(); ++t)
+        crossings = std::max(crossings, norm(velocity_[t]) / surface_.edge_length(t));
+    const double told = std::max(vortex_particle::fastest(input_.films->solids), norm(stream_.velocity()));
+    crossings = std::max(crossings, told / surface_.mean_edge);
     constexpr double kMostCompression = 0.5;  // |theta| dt [method sheet 14]
     double dt = options_.largest_step;
     if (moving_) dt = std::min(dt, farthest_film_step());
-    if (fastest > 0.0) dt = std::min(dt, options_.courant * surface_.mean_edge / fastest);
+    if (crossings > 0.0) dt = std::min(dt, options_.courant / crossings);
     if (fastest_dilatation_ > 0.0) dt = std::min(dt, kMostCompression / fastest_dilatation_);
-    if (!std::isfinite(fastest) || dt < 1e-6 * options_.largest_step)
-        throw NumericalError(fmt::format("vortex_particle: at {} s, step {}, the flow runs away: {} m/s, dilatation {} 1/s",
-                                         time_, steps_, fastest, fastest_dilatation_));
+    if (!std::isfinite(crossings) || dt < 1e-6 * options_.largest_step)
+        throw NumericalError(fmt::format("vortex_particle: at {} s, step {}, the flow runs away: {} edges/s, dilatation {} 1/s",
+                                         time_, steps_, crossings, fastest_dilatation_));
     dt = left / std::ceil(left / dt - 1e-9);
     constexpr double kSame = 1e-9;  // steps that differ by rounding are one step, and share their matrices
     return std::abs(dt - step_) < kSame * dt ? step_ : dt;
@@ -157,7 +166,7 @@ MeshFlow VortexParticleSolver::particles_to_mesh() const {
         flow.thickness[v] /= flow.area[v];
         flow.surfactant[v] /= flow.area[v];
     }
-    flow.outflow = divergence(surface_, flow.velocity);
+    flow.outflow = divergence(surface_, stream_.relative(flow.velocity));
     return flow;
 }
 
@@ -290,30 +299,38 @@ void VortexParticleSolver::recover_velocity(MeshFlow& flow) const {
     flow.velocity =
         rotated_gradient(surface_, flow_solver_.stream_function(surface_, flow.circulation, hole_circulation_));
     const std::vector<Vec3> away = gradient(surface_, flow_solver_.potential(surface_, flow.outflow));
-    for (std::size_t t = 0; t < away.size(); ++t) flow.velocity[t] += away[t];
+    for (std::size_t t = 0; t < away.size(); ++t) flow.velocity[t] += away[t] + stream_.velocity();
 }
 
 /// In a solid the film moves with it. What would give it the solid's velocity goes into the circulation alone, and so
 /// gets around the solid what it cannot compress; sweeps until the film inside obeys to a hundredth. The circulation
 /// that is added sums to zero: what a solid sheds it keeps the opposite of. [method sheet 6.3]
-void VortexParticleSolver::obey_solids(double time, MeshFlow& flow) const {
-    if (input_.films->solids.empty()) return;
+void VortexParticleSolver::obey_solids(double dt, MeshFlow& flow) {
+    if (bodies_.empty()) return;
     constexpr int kSweeps = 12;
-    constexpr double kObeyed = 0.01;  // of the fastest solid
-    const Cover cover = cover_of(surface_, input_.films->solids, time);
-    const double enough = kObeyed * vortex_particle::fastest(input_.films->solids);
+    constexpr double kObeyed = 0.01;  // of what moves fastest
+    move_bodies(input_.films->solids, time_ + dt, dt, bodies_);
+    double speed = std::max(vortex_particle::fastest(input_.films->solids), norm(stream_.velocity()));
+    std::vector<double> mass(surface_.triangles());
+    for (std::size_t t = 0; t < mass.size(); ++t) {
+        const auto& [a, b, c] = surface_.corner[t];
+        const double thickness = (flow.thickness[a] + flow.thickness[b] + flow.thickness[c]) / 3.0;
+        mass[t] = input_.films->material.liquid_density * thickness * surface_.area[t];
+    }
+    for (const Body& body : bodies_)
+        if (body.free) speed = std::max(speed, norm(body.velocity));
+    Grip grip(surface_, cover_of(surface_, bodies_), std::move(mass), bodies_, input_.films->material.gravity, dt);
+    const std::vector<double> none(surface_.loops.size(), 0.0);
     std::vector<Vec3> change(surface_.triangles());
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
-        double worst = 0.0;
-        for (std::size_t t = 0; t < change.size(); ++t) {
-            change[t] = cover.share[t] * (cover.velocity[t] - flow.velocity[t]);
-            if (cover.share[t] == 1.0) worst = std::max(worst, norm(change[t]));
-        }
-        if (worst <= enough) return;
+        const double worst = grip.sweep(flow.velocity, change);
         const std::vector<double> more = closed_curl(surface_, change);
         for (std::size_t v = 0; v < more.size(); ++v) flow.circulation[v] += more[v];
-        recover_velocity(flow);
+        const std::vector<Vec3> swirl = rotated_gradient(surface_, flow_solver_.stream_function(surface_, more, none));
+        for (std::size_t t = 0; t < swirl.size(); ++t) flow.velocity[t] += swirl[t];
+        if (worst <= kObeyed * speed) break;
     }
+    grip.finish();
 }
 
 /// Particles take over changes, not values: what the mesh cannot see of them stays [Tao24, eq. 21]. Velocities follow
@@ -358,9 +375,39 @@ void VortexParticleSolver::move_particles(double dt, const MeshFlow& flow) {
         for (std::size_t t = 0; t < velocity.size(); ++t) velocity[t] += ahead * (velocity[t] - velocity_[t]);
     }
     trace(surface_, vertex_velocity(surface_, velocity), dt, particles_);
+    if (surface_.open()) exchange_with_stream(dt);
     bins_ = sort_by_triangle(particles_, surface_.triangles());
     fill_empty_triangles(surface_, particles_, bins_);
+    merge_crowds(surface_, most_per_triangle(), particles_, bins_);
     exchange_between_leaves(surface_, bins_, options_.leaf_exchange * dt, particles_);
+}
+
+/// Never fewer than splitting makes.
+std::size_t VortexParticleSolver::most_per_triangle() const {
+    const int most = options_.most_per_triangle > 0 ? options_.most_per_triangle : 4 * options_.particles_per_triangle;
+    return static_cast<std::size_t>(std::max(2, most));
+}
+
+/// The liquid's own attraction tears a film that is thin enough: where it is thinnest.
+void VortexParticleSolver::look_for_rupture(const MeshFlow& flow) {
+    if (options_.rupture_thickness == 0.0 || ruptured_) return;
+    const std::vector<double> thickness = whole_thickness(surface_, flow.thickness);
+    const auto thinnest = std::min_element(thickness.begin(), thickness.end());
+    if (*thinnest > options_.rupture_thickness) return;
+    ruptured_ = true;
+    const Vec3& x = surface_.position[static_cast<std::size_t>(thinnest - thickness.begin())];
+    events_.push_back({time_, "burst", x, fmt::format("the film is {:.3g} m thick", *thinnest)});
+}
+
+std::optional<std::string> VortexParticleSolver::stop_reason() const {
+    if (!ruptured_) return std::nullopt;
+    return "the film is as thin as rupture_thickness and bursts";
+}
+
+void VortexParticleSolver::exchange_with_stream(double dt) {
+    liquid_out_ += remove_gone(particles_);
+    liquid_in_ += stream_.let_in(dt, steps_, particles_);
+    stream_.absorb(dt, particles_);
 }
 
 }  // namespace lamella::vortex_particle

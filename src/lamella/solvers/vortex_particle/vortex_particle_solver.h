@@ -7,12 +7,16 @@
 #include "lamella/solvers/vortex_particle/options.h"
 #include "lamella/solvers/vortex_particle/particles.h"
 #include "lamella/solvers/vortex_particle/rebin.h"
+#include "lamella/solvers/vortex_particle/solids.h"
+#include "lamella/solvers/vortex_particle/stream.h"
 #include "lamella/solvers/vortex_particle/transfer.h"
 
 #include <functional>
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace lamella::vortex_particle {
@@ -44,13 +48,15 @@ public:
     sim::Frame frame() const override;
     std::vector<sim::Scalar> scalars() const override;
     std::vector<sim::Scalar> characteristic_numbers() const override;
-    std::vector<sim::Event> take_events() override;
+    std::vector<sim::Event> take_events() override { return std::exchange(events_, {}); }
+    std::optional<std::string> stop_reason() const override;
 
     void save(sim::StateWriter& out) const override;
     void load(sim::StateReader& in) override;
 
     const Surface& surface() const { return surface_; }
     const Particles& particles() const { return particles_; }
+    const std::vector<Body>& bodies() const { return bodies_; }
     /// The flow of this moment, for whoever looks.
     const MeshFlow& observed() const;
     double kinetic_energy() const;  ///< [J]
@@ -67,10 +73,13 @@ private:
     std::vector<double> compress(double dt, MeshFlow& flow);
     void hold_walls(MeshFlow& flow);
     void diffuse(double dt, MeshFlow& flow);
-    void obey_solids(double time, MeshFlow& flow) const;
+    void obey_solids(double dt, MeshFlow& flow);
     void recover_velocity(MeshFlow& flow) const;
     void mesh_to_particles(double dt, const MeshFlow& before, const MeshFlow& after, const std::vector<double>& dilatation);
     void move_particles(double dt, const MeshFlow& flow);
+    void exchange_with_stream(double dt);
+    std::size_t most_per_triangle() const;
+    void look_for_rupture(const MeshFlow& flow);
 
     SurfactantProblem surfactant_problem(double dt, const MeshFlow& flow) const;
     void note_iterations(int iterations, double residual);
@@ -120,6 +129,7 @@ private:
 
     // The film, and what is worked out for it once.
     Surface surface_;
+    Stream stream_;
     Transfer transfer_;
     FlowSolver flow_solver_;
     ShiftedStiffness diffusion_, compression_;
@@ -129,12 +139,16 @@ private:
     // The state.
     Particles particles_;
     Bins bins_;
+    std::vector<Body> bodies_;
     std::vector<double> hole_circulation_;
     std::vector<Vec3> velocity_;     ///< of triangles, that the last step found
     double time_ = 0.0;
     std::int64_t steps_ = 0;
     double step_ = 0.0;              ///< the last one
     double fastest_dilatation_ = 0.0;
+    bool ruptured_ = false;
+    std::vector<sim::Event> events_;  ///< since the last look
+    double liquid_in_ = 0.0, liquid_out_ = 0.0;  ///< that the stream has brought and taken [m^3]
     std::int64_t iterations_ = 0;    ///< of the surfactant's equation in the last step
     /// For which its equation is factored; the factors precondition those of other steps.
     struct Reference {
@@ -143,7 +157,6 @@ private:
     } reference_;
     double diffusion_step_ = 0.0;    ///< for which the diffusion is factored
     mutable std::optional<MeshFlow> observed_;
-    std::vector<sim::Event> events_;
     std::unique_ptr<Moving> moving_;  ///< nothing where films stand still
 };
 
