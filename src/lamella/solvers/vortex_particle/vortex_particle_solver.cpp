@@ -58,10 +58,16 @@ VortexParticleSolver::VortexParticleSolver(const Options& options, const sim::So
     const double most = std::abs(*std::max_element(curvature.begin(), curvature.end(),
                                                    [](double a, double b) { return std::abs(a) < std::abs(b); }));
     if (most * surface_.total_area > 1e-6) curvature_ = curvature;
-    for (const Body& body : bodies_)
+    for (const Body& body : bodies_) {
+        const double around = 2.0 * 3.14159265358979 * body.radius * body.radius * input_.films->material.liquid_density *
+                              input_.films->material.thickness;
+        if (body.free && body.mass < around)
+            throw InputError(fmt::format("vortex_particle: a free solid lighter than the film that it moves, {:.3g} kg, is not "
+                                         "built yet; raise solid.mass", around));
         for (const Vec3& n : surface_.normal)
             if (body.free && dot(n, surface_.normal[0]) < 1.0 - 1e-9)
                 throw InputError("vortex_particle: a solid with free = true on a curved film is not built yet");
+    }
     std::vector<Vec3> gravity(surface_.triangles());
     for (std::size_t t = 0; t < gravity.size(); ++t) {
         const Vec3& g = input_.films->material.gravity;
