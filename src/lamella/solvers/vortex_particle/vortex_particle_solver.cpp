@@ -67,11 +67,24 @@ VortexParticleSolver::VortexParticleSolver(const Options& options, const sim::So
         if (wire.moves() || (wire.ring && wire.ring->blow != 0.0))
             throw InputError("vortex_particle: wires that move or blow are not built yet");
     if (options_.moving) check_moving();
-    for (const Body& body : bodies_)
-        for (const Vec3& n : surface_.normal)
-            if (body.free && dot(n, surface_.normal[0]) < 1.0 - 1e-9)
-                throw InputError("vortex_particle: a solid with free = true on a curved film is not built yet");
+    check_solids();
     take_shape();
+}
+
+/// @throws InputError  free ones that are too light or where they could not stay in a plane
+void VortexParticleSolver::check_solids() const {
+    constexpr double kPi = 3.14159265358979323846;
+    const film::Material& material = input_.films->material;
+    for (const Body& body : bodies_) {
+        if (!body.free) continue;
+        const double around = 2.0 * kPi * body.radius * body.radius * material.liquid_density * material.thickness;
+        if (body.mass < around)
+            throw InputError(fmt::format("vortex_particle: a free solid lighter than the film that it moves, {:.3g} kg, is not "
+                                         "built yet; raise solid.mass", around));
+        for (const Vec3& n : surface_.normal)
+            if (dot(n, surface_.normal[0]) < 1.0 - 1e-9)
+                throw InputError("vortex_particle: a solid with free = true on a curved film is not built yet");
+    }
 }
 
 /// What follows from where the surface lies: its curvature, and gravity along it.

@@ -84,6 +84,7 @@ private:
     SurfactantProblem surfactant_problem(double dt, const MeshFlow& flow) const;
     void note_iterations(int iterations, double residual);
     void take_dilatation(const std::vector<double>& dilatation, MeshFlow& flow);
+    void check_solids() const;
     void take_shape();
 
     // Films that move, in moving.cpp.
