@@ -152,25 +152,15 @@ void BubbleSolver<D>::remember_start() {
 
 template <int D>
 sim::StepReport BubbleSolver<D>::advance(double time_limit) {
-    const double left = time_limit - time_;
-    double longest = left / time_rate_;
-    // Two equal steps rather than a long one and a sliver.
     const double wanted = std::min(integrator_->next_step(), options_.integrator.max_step);
-    const bool lands = longest <= wanted;
-    if (!lands && longest < 2.0 * wanted) longest *= 0.5;
-
-    const Step step = integrator_->step(*system_, longest);
-    mechanical_time_ += step.clock;
-    const bool full = lands && step.time == longest;
-    time_ = full && step.clock == step.time ? time_limit : time_ + step.clock * time_rate_;
-    ++steps_;
-    evaluations_ += step.evaluations;
-    rejections_ += step.rejections;
+    const Landing landing = clock_.landing(time_limit, time_rate_, wanted);
+    const Step step = integrator_->step(*system_, landing.longest);
+    clock_.tick(step, landing, time_limit, time_rate_);
 
     std::vector<sim::Event> removed = remove_vanished(*system_, options_.compat.removal);
     if (!removed.empty()) integrator_->foam_changed();
     for (sim::Event& event : removed) {
-        event.time = time_;
+        event.time = clock_.time;
         events_.push_back(std::move(event));
     }
     return {.step = step.clock * time_rate_, .evaluations = step.evaluations, .iterations = 0, .residual = step.error};
@@ -196,7 +186,7 @@ std::optional<double> BubbleSolver<D>::progress() const {
     constexpr double kEarly = 0.6;
     const auto start = static_cast<double>(start_count_);
     if (!system_->model.exchanges_gas() || start <= options_.end_count) return std::nullopt;
-    const double tau = mechanical_time_ * system_->model.scaled_time_rate();
+    const double tau = clock_.mechanical_time * system_->model.scaled_time_rate();
     const double shrunk = start / static_cast<double>(system_->foam.live);
     const double crossover = shrunk > 1.1 ? tau / (std::pow(shrunk, kDecay) - 1.0) : 2.5;
     const double end = crossover * (std::pow(start / options_.end_count, kDecay) - 1.0);

@@ -5,6 +5,7 @@
 
 #include "lamella/sim/registry.h"
 #include "lamella/sim/solver.h"
+#include "lamella/solvers/bubble/clock.h"
 #include "lamella/solvers/bubble/integrator.h"
 #include "lamella/solvers/bubble/options.h"
 #include "lamella/solvers/bubble/system.h"
@@ -22,9 +23,9 @@ public:
     void start(const sim::StartContext& context) override;
     sim::StepReport advance(double time_limit) override;
 
-    double time() const override { return time_; }
+    double time() const override { return clock_.time; }
     std::string time_unit() const override { return "-"; }
-    std::int64_t step() const override { return steps_; }
+    std::int64_t step() const override { return clock_.steps; }
     std::optional<std::string> stop_reason() const override;
     std::optional<double> progress() const override;
 
@@ -51,11 +52,7 @@ private:
     std::unique_ptr<System<D>> system_;
     std::unique_ptr<Integrator<D>> integrator_;
 
-    double time_ = 0.0;
-    std::int64_t steps_ = 0;
-    std::int64_t evaluations_ = 0;
-    std::int64_t rejections_ = 0;
-    double mechanical_time_ = 0.0;
+    Clock clock_;
     double start_gas_ = 0.0;     ///< sum of q at the start
     std::int64_t start_count_ = 0;
     std::vector<sim::Event> events_;

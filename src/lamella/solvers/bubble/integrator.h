@@ -4,18 +4,10 @@
 #include <memory>
 
 #include "lamella/sim/archive.h"
+#include "lamella/solvers/bubble/clock.h"
 #include "lamella/solvers/bubble/system.h"
 
 namespace lamella::bubble {
-
-/// What one accepted step did.
-struct Step {
-    double time = 0.0;   ///< mechanical time by which the state advanced
-    double clock = 0.0;  ///< time by which the clock advances: the same, unless compat.clock asks for the published bug
-    double error = 0.0;  ///< its error estimate [length]
-    std::int64_t evaluations = 0;  ///< of the attempts that counted (an attempt whose lists were outgrown is repeated)
-    std::int64_t rejections = 0;
-};
 
 /// Advances a System by adaptive steps.
 template <int D>
