@@ -37,6 +37,7 @@ FOLDERS["run"] = list(FOLDERS)
 LIBRARIES = {
     r"tbb/|oneapi/tbb/": ["core"],
     r"Random123/": ["core"],
+    r"cub/": ["core"],
     r"Eigen/|unsupported/Eigen/": ["linalg"],
     r"hdf5": ["io"],
     r"H5[A-Za-z]*public\.h": ["io"],

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "lamella/core/host_device.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -7,11 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "lamella/core/host_device.h"
-
 // Programs that run on a GPU are written once, against a machine: they hand it loops whose bodies are functors of plain
-// values. CudaMachine (core/cuda_machine.cuh) runs them as kernels; HostMachine runs the same bodies one after the other,
-// in any order of its "threads", so that every line of such a program is tested where there is no GPU.
+// values. CudaMachine (core/cuda_machine.cuh) runs them as kernels; HostMachine runs the same bodies one after the
+// other, in any order of its "threads", so that every line of such a program is tested where there is no GPU.
 
 namespace lamella {
 
@@ -97,9 +97,10 @@ public:
         body(total1, total2);
     }
 
-    /// Runs record() `times` times; on a GPU it is recorded once, and again only after forget_recording.
+    /// Runs record() `times` times; on a GPU it is recorded once for each `which` (0 or 1), and again only after
+    /// forget_recording.
     template <class Record>
-    void repeat(int times, Record&& record) {
+    void repeat(int /*which*/, int times, Record&& record) {
         for (int n = 0; n < times; ++n) record();
     }
     void forget_recording() {}
@@ -132,9 +133,12 @@ public:
 private:
     std::size_t place(std::size_t n, std::size_t count) const {
         switch (order_) {
-            case Order::kForward: return n;
-            case Order::kBackward: return count - 1 - n;
-            case Order::kShuffled: break;
+            case Order::kForward:
+                return n;
+            case Order::kBackward:
+                return count - 1 - n;
+            case Order::kShuffled:
+                break;
         }
         constexpr std::size_t kPrimes[] = {7919, 104729};  // one of them has no factor in common with count
         const std::size_t step = std::gcd(count, kPrimes[0]) == 1 ? kPrimes[0] : kPrimes[1];

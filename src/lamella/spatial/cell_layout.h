@@ -1,13 +1,13 @@
 #pragma once
 
+#include "lamella/core/vec.h"
+#include "lamella/spatial/periodic_box.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-
-#include "lamella/core/vec.h"
-#include "lamella/spatial/periodic_box.h"
 
 namespace lamella::spatial {
 
@@ -106,11 +106,8 @@ private:
 /// Calls found(image) for every periodic image of a ball that is nearer than `limit`: image[k] box lengths are to be
 /// subtracted from `separation`.
 template <int D, class Found>
-LAMELLA_HOST_DEVICE void for_each_image(const PeriodicBox<D>& box,
-                                        const Vec<D>& inverse_lengths,
-                                        const Vec<D>& separation,
-                                        double limit,
-                                        Found&& found) {
+LAMELLA_HOST_DEVICE void for_each_image(
+    const PeriodicBox<D>& box, const Vec<D>& inverse_lengths, const Vec<D>& separation, double limit, Found&& found) {
     int low[D] = {};
     int high[D] = {};
     for (std::size_t k = 0; k < D; ++k) {

@@ -12,6 +12,11 @@
 
 namespace lamella::bubble {
 
+namespace detail {
+template <int D>
+class DeviceRunner;
+}
+
 /// The wet-foam bubble model with gas exchange in D dimensions [Lankinen20]: discs or balls that push each other
 /// apart, move against the liquid, exchange gas through the films between them and through the liquid, and vanish.
 template <int D>
@@ -19,6 +24,7 @@ class BubbleSolver final : public sim::Solver {
 public:
     /// @throws InputError  options that do not go together
     BubbleSolver(const Options& options, const sim::SolverInput& input);
+    ~BubbleSolver() override;
 
     void start(const sim::StartContext& context) override;
     sim::StepReport advance(double time_limit) override;
@@ -38,12 +44,21 @@ public:
     void save(sim::StateWriter& out) const override;
     void load(sim::StateReader& in) override;
 
-    const System<D>& system() const { return *system_; }
+    const System<D>& system() const {
+        observe();
+        return *system_;
+    }
 
 private:
     std::vector<std::uint32_t> id_order() const;
     void remember_start();
     void make_integrator();
+    void take_to_device();
+    sim::StepReport advance_on_device(double time_limit);
+    /// Brings the foam up to date with the device, where that holds it.
+    void observe() const;
+    std::size_t live() const;
+    double largest_size() const;
 
     Options options_;
     sim::SolverInput input_;
@@ -51,6 +66,10 @@ private:
     LocalDomain domain_;
     std::unique_ptr<System<D>> system_;
     std::unique_ptr<Integrator<D>> integrator_;
+
+    /// Takes the steps instead of the integrator; empty on the CPU. What leaves the solver is taken from system_ there too.
+    std::unique_ptr<detail::DeviceRunner<D>> device_;
+    mutable bool observed_ = true;  ///< system_ is up to date with it
 
     Clock clock_;
     double start_gas_ = 0.0;     ///< sum of q at the start

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cmath>
-#include <vector>
-
 #include "lamella/core/simd.h"
 #include "lamella/solvers/bubble/shape.h"
+
+#include <cmath>
+#include <vector>
 
 // Runge-Kutta-Chebyshev of order 2 [Sommeijer98]: its weights, and how it chooses stages and steps.
 
@@ -23,8 +23,8 @@ std::vector<StageWeights> stage_weights(int s);
 /// d_j of one quantity of one bubble, or of eight. The first stage knows f_0 only.
 /// @param w  weights with `rate` and `first_rate` times h
 template <class Real>
-LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE Real stage_increment(
-    const StageWeights& w, const Real& first, const Real& last, const Real& before, const Real& rate) {
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE Real
+stage_increment(const StageWeights& w, const Real& first, const Real& last, const Real& before, const Real& rate) {
     Real d = w.first_rate * first;
     d += w.mu * last + w.nu * before + w.rate * rate;
     return d;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cstdint>
-
 #include "lamella/core/host_device.h"
+
+#include <cstdint>
 
 namespace lamella::bubble {
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <cmath>
-#include <numbers>
-
 #include "lamella/core/fixed_sum.h"
 #include "lamella/solvers/bubble/model.h"
 #include "lamella/solvers/bubble/shape.h"
+
+#include <cmath>
+#include <numbers>
 
 namespace lamella::bubble {
 
@@ -69,9 +69,15 @@ LAMELLA_HOST_DEVICE GasExchange close_exchange(const Model& m, const GasSums& su
     const double mean_scale = sums.scale.value() / live;
     double factor = m.medium_ratio * m.exchange_rate;
     switch (m.medium_scaling) {
-        case MediumScaling::kArea: factor *= m.initial_mean_surface / mean_scale; break;
-        case MediumScaling::kRadius: factor *= m.initial_mean_radius / mean_scale; break;
-        case MediumScaling::kLsw: factor *= 4.0 * std::numbers::pi * m.input_mean_radius; break;
+        case MediumScaling::kArea:
+            factor *= m.initial_mean_surface / mean_scale;
+            break;
+        case MediumScaling::kRadius:
+            factor *= m.initial_mean_radius / mean_scale;
+            break;
+        case MediumScaling::kLsw:
+            factor *= 4.0 * std::numbers::pi * m.input_mean_radius;
+            break;
     }
     gas.medium_factor = factor / Shape<D>::kVolume;
     return gas;

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <limits>
-
 #include "lamella/core/simd.h"
 #include "lamella/solvers/bubble/model.h"
 #include "lamella/solvers/bubble/shape.h"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
 
 // How one bubble (or eight) takes an increment (dx, dq) of a step or of a stage.
 

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "lamella/sim/archive.h"
 #include "lamella/solvers/bubble/clock.h"
+#include "lamella/solvers/bubble/integrator_state.h"
 #include "lamella/solvers/bubble/system.h"
 
 namespace lamella::bubble {
@@ -24,9 +26,16 @@ public:
     /// The step that the next attempt would like to take.
     virtual double next_step() const = 0;
 
+    /// What is exchanged with a device that takes the steps instead. Only for rkc2: abm2 has a history as well.
+    virtual IntegratorState state() const = 0;
+    virtual void set_state(const IntegratorState& state) = 0;
+
     virtual void save(sim::StateWriter& out, const std::vector<std::uint32_t>& order) const = 0;
     virtual void load(sim::StateReader& in, System<D>& system) = 0;
 };
+
+/// What a NumericalError says when no step is small enough.
+std::string step_underflow(double error, double tolerance);
 
 template <int D>
 std::unique_ptr<Integrator<D>> make_rkc2(const Options& options, System<D>& system);

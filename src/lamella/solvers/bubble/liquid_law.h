@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cmath>
-
 #include "lamella/solvers/bubble/options.h"
 #include "lamella/spatial/periodic_box.h"
+
+#include <cmath>
 
 namespace lamella::bubble {
 
@@ -63,8 +63,11 @@ struct LiquidLaw {
     LAMELLA_HOST_DEVICE Vec<D> flow(const Vec<D>& x, double radius) const {
         Vec<D> u;
         switch (flow_options.kind) {
-            case FlowKind::kNone: break;
-            case FlowKind::kShear: u[0] = flow_options.shear_rate * (x[1] - 0.5 * box.lengths[1]); break;
+            case FlowKind::kNone:
+                break;
+            case FlowKind::kShear:
+                u[0] = flow_options.shear_rate * (x[1] - 0.5 * box.lengths[1]);
+                break;
             case FlowKind::kRegion:
             case FlowKind::kUniform: {
                 const double weight = flow_options.kind == FlowKind::kRegion ? region_weight(x, radius) : 1.0;
@@ -102,8 +105,7 @@ struct LiquidLaw {
     }
 
     LAMELLA_HOST_DEVICE Vec<D> reduce_tangential(const WallTouch& touch, Vec<D> v) const {
-        for (std::size_t k = 0; k < D; ++k)
-            v[k] = touch.velocity[k] + touch.tangential[k] * (v[k] - touch.velocity[k]);
+        for (std::size_t k = 0; k < D; ++k) v[k] = touch.velocity[k] + touch.tangential[k] * (v[k] - touch.velocity[k]);
         return v;
     }
 

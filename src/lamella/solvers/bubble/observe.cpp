@@ -34,6 +34,7 @@ double component(const Columns<D>& columns, std::size_t i, std::size_t k) {
 
 template <int D>
 sim::Frame BubbleSolver<D>::frame() const {
+    observe();
     const Foam<D>& foam = system_->foam;
     const auto order = id_order();
     const Census<D> census = take_census(*system_, options_);
@@ -89,6 +90,7 @@ sim::Frame BubbleSolver<D>::frame() const {
 
 template <int D>
 std::vector<sim::Scalar> BubbleSolver<D>::scalars() const {
+    observe();
     const Model& model = system_->model;
     const Census<D> census = take_census(*system_, options_);
     std::vector<sim::Scalar> list = {

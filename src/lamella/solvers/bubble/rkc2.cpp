@@ -37,6 +37,12 @@ public:
     Step step(System<D>& system, double longest) override;
     void foam_changed() override { rates_current_ = false; }
     double next_step() const override { return next_step_; }
+    IntegratorState state() const override { return {next_step_, stiffness_, rates_current_}; }
+    void set_state(const IntegratorState& state) override {
+        next_step_ = state.next_step;
+        stiffness_ = state.stiffness;
+        rates_current_ = state.rates_current;
+    }
 
     void save(sim::StateWriter& out, const std::vector<std::uint32_t>&) const override {
         out.write_value("integrator/next_step", next_step_);
@@ -206,8 +212,7 @@ Step Rkc2<D>::step(System<D>& system, double longest) {
         ++done.rejections;
         stiffness_ = first_stiffness;
         if (next_step_ < 1e-12)
-            throw NumericalError(fmt::format("the time step fell below 1e-12 (error {} at tolerance {})", done.error,
-                                             tolerance));
+            throw NumericalError(step_underflow(done.error, tolerance));
     }
     expected_reach_ = stage_reach_;
     accept_moved(system, last_);

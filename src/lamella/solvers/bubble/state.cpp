@@ -21,6 +21,7 @@ auto in_order(const C& column, const std::vector<std::uint32_t>& order) {
 
 template <int D>
 void BubbleSolver<D>::save(sim::StateWriter& out) const {
+    observe();
     const auto order = id_order();
     const Model& m = system_->model;
     out.write_value("dimension", std::int64_t{D});
@@ -87,6 +88,7 @@ void BubbleSolver<D>::load(sim::StateReader& in) {
     integrator_->load(in, *system_);
     system_->prepare(LiquidMotion::kAsGiven);
     system_->rebuild();
+    take_to_device();
 }
 
 template class BubbleSolver<2>;
