@@ -8,7 +8,6 @@
 #include "lamella/scene/shipped.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "command_line.h"
 #include "commands.h"
@@ -54,13 +53,6 @@ void check_device(const std::string& device) {
     if (device != "cuda") return;
     const std::string fault = cuda_fault();
     if (!fault.empty()) throw InputError(fault);
-}
-
-ProgressStyle progress_style(const std::string& name) {
-    if (name == "bar") return ProgressStyle::kBar;
-    if (name == "plain") return ProgressStyle::kPlain;
-    if (name == "none") return ProgressStyle::kNone;
-    return ::isatty(STDERR_FILENO) != 0 ? ProgressStyle::kBar : ProgressStyle::kPlain;
 }
 
 /// "runs/coarsening-2d" for scenes/bubble/coarsening-2d.toml.
