@@ -348,6 +348,7 @@ spatial::VortexSumOptions VortexSheetSolver::sum_options() const {
             .delta = options_.smoothing_length * input_.films->edge_length,
             .precision = options_.sum_in_double ? spatial::VortexSumOptions::Precision::kDouble
                                                 : spatial::VortexSumOptions::Precision::kSingle,
+            .device = input_.device,
             .tolerance = options_.sum_tolerance};
 }
 
