@@ -72,6 +72,8 @@ sim::Frame VortexParticleSolver::frame() const {
         frame.points.fields.push_back({"thickness", "m", 1, false, std::move(thickness)});
         frame.points.fields.push_back(vectors("velocity", "m/s", particles_.velocity));
     }
+    for (const film::Solid& solid : input_.films->solids)
+        frame.solids.push_back({solid.center_at(time_), solid.radius});
     frame.scalars = scalars();
     return frame;
 }
