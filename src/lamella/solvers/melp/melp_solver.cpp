@@ -3,6 +3,7 @@
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/linalg/small_cholesky.h"
+#include "lamella/solvers/melp/keep_inside.h"
 #include "lamella/solvers/melp/operators.h"
 #include "lamella/solvers/melp/redistribution.h"
 #include "lamella/solvers/melp/start.h"
@@ -39,12 +40,15 @@ void MelpSolver::start(const sim::StartContext&) {
     fine_ = std::move(start.fine);
     gas_ = std::move(start.gas);
     even_ = std::move(start.even);
+    rims_ = std::move(start.rims);
     spacing_ = start.spacing;
+    set_rims(0.0);
     sort_fine_particles(fine_, spacing_);
     update_shape();
     even_out_layout();
-    const std::vector<double> volume = particle_volumes(coarse_, geometry_, gas_);
-    for (std::size_t r = 0; r < gas_.size(); ++r) gas_[r].calibration = gas_[r].volume / volume[r];
+    const std::vector<double> volume = particle_volumes(coarse_, geometry_, rims_now_, gas_);
+    for (std::size_t r = 0; r < gas_.size(); ++r)
+        if (gas_[r].closed) gas_[r].calibration = gas_[r].volume / volume[r];
     update_liquid();
     transfer_->project(geometry_.patch, geometry_.normal, fine_);
     update_liquid();
@@ -61,6 +65,7 @@ void MelpSolver::even_out_layout() {
         const std::vector<Vec3> shift = evening_shift(geometry_, coarse_, gas_.size(), spacing_);
         for (std::size_t i = 0; i < coarse_.size(); ++i)
             coarse_.position[i] += along_patch(geometry_.patch[i], shift[i]);
+        keep_coarse_inside();
         update_shape();
     }
 }
@@ -82,6 +87,8 @@ sim::StepReport MelpSolver::advance(double time_limit) {
     filter_short_waves();
     give_to_fine(dt);
     move_coarse(dt, normal);
+    set_rims(time_ + dt);
+    keep_coarse_inside();
     update_shape();
     move_fine(dt);
     update_liquid();
@@ -101,6 +108,7 @@ double MelpSolver::choose_step(double time_limit) const {
     double fastest = 0.0;
     for (const Vec3& u : coarse_.velocity) fastest = std::max(fastest, norm(u));
     for (const Vec3& u : fine_.velocity) fastest = std::max(fastest, norm(u));
+    fastest = std::max(fastest, rims_.fastest());
     const double farthest = options_.cfl * spacing_, pull = strongest_pull();
     double dt = options_.largest_step > 0.0 ? options_.largest_step : std::numeric_limits<double>::infinity();
     if (fastest > 0.0) dt = std::min(dt, farthest / fastest);
@@ -149,8 +157,7 @@ SurfactantStep MelpSolver::push_along_film(double dt) {
 std::vector<double> MelpSolver::masses() const {
     std::vector<double> mass(coarse_.size());
     for (std::size_t i = 0; i < mass.size(); ++i) {
-        const double radius =
-            std::cbrt(0.75 * gas_[static_cast<std::size_t>(coarse_.region[i])].volume / std::numbers::pi);
+        const double radius = gas_[static_cast<std::size_t>(coarse_.region[i])].radius();
         mass[i] = options_.liquid_density * films_.liquid_volume[i] +
                   options_.air_mass * input_.films->material.air_density * radius * geometry_.area[i];
     }
@@ -186,7 +193,8 @@ NormalStep MelpSolver::push_along_normals(double dt) {
                                           .dt = dt,
                                           .tolerance = options_.solver_tolerance});
     for (std::size_t i = 0; i < count; ++i) coarse_.velocity[i] += (step.velocity[i] - before[i]) * geometry_.normal[i];
-    for (std::size_t r = 0; r < gas_.size(); ++r) gas_[r].volume += step.swept[r];
+    for (std::size_t r = 0; r < gas_.size(); ++r)
+        if (gas_[r].closed) gas_[r].volume += step.swept[r];
     return step;
 }
 
@@ -194,7 +202,7 @@ NormalStep MelpSolver::push_along_normals(double dt) {
 /// the velocity is made of these: a uniform velocity leaves nothing, a swing in mode 2 the square of a hundredth.
 void MelpSolver::filter_short_waves() {
     if (options_.grid_filter == 0.0) return;
-    const std::vector<Vec3> rough = roughness(geometry_, roughness(geometry_, coarse_.velocity));
+    const std::vector<Vec3> rough = roughness(geometry_, roughness(geometry_, coarse_.velocity, Beyond::kVelocity), Beyond::kDifference);
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         const Vec3& n = geometry_.normal[i];
         coarse_.velocity[i] -= (options_.grid_filter * dot(rough[i], n)) * n;
@@ -248,7 +256,7 @@ void MelpSolver::give_back(const std::vector<Vec3>& momentum) {
                     films_.liquid_volume[i] * geometry_.normal[i][k] * geometry_.normal[i][m];
     std::vector<Vec3> missing(gas_.size());
     for (std::size_t r = 0; r < gas_.size(); ++r) {
-        if (even_[r].liquid_volume > 0.0) continue;
+        if (even_[r].liquid_volume > 0.0 || gas_[r].held) continue;
         std::array<double, 3> u{};
         for (std::size_t k = 0; k < 3; ++k) u[k] = momentum[r][k] - now[r][k];
         if (linalg::solve_positive<3>(along[r], u)) missing[r] = {{u[0], u[1], u[2]}};
@@ -285,11 +293,22 @@ void MelpSolver::move_fine(double dt) {
         fine_.thickness[p] *= std::exp(-dt * (slope[0][0] + slope[1][1] + slope[2][2]));
     });
     transfer_->project(geometry_.patch, geometry_.normal, fine_);
+    keep_inside({rims_now_, coarse_.position, coarse_.region, spacing_, 0.0}, fine_.region, fine_.position,
+                fine_.velocity);
     constexpr std::int64_t kSortEvery = 32;
     if ((steps_ + 1) % kSortEvery == 0) sort_fine_particles(fine_, spacing_);
 }
 
-void MelpSolver::update_shape() { geometry_ = geometry_of(coarse_, support_radius()); }
+void MelpSolver::set_rims(double time) { rims_now_ = rims_.at(time); }
+
+/// Coarse particles nearer to a rim than this would count its pictures double.
+void MelpSolver::keep_coarse_inside() {
+    constexpr double kNearest = 0.2;  // spacings
+    keep_inside({rims_now_, coarse_.position, coarse_.region, spacing_, kNearest * spacing_}, coarse_.region,
+                coarse_.position, coarse_.velocity);
+}
+
+void MelpSolver::update_shape() { geometry_ = geometry_of(coarse_, support_radius(), rims_now_); }
 
 void MelpSolver::update_liquid() {
     transfer_.emplace(coarse_, geometry_.normal, fine_, support_radius());
@@ -300,8 +319,9 @@ void MelpSolver::update_liquid() {
 /// follow the sums slowly. [method sheet 16.2]
 void MelpSolver::follow_particle_volumes(double dt) {
     const double share = -std::expm1(-options_.volume_rate * dt);
-    const std::vector<double> volume = particle_volumes(coarse_, geometry_, gas_);
-    for (std::size_t r = 0; r < gas_.size(); ++r) gas_[r].volume += share * (volume[r] - gas_[r].volume);
+    const std::vector<double> volume = particle_volumes(coarse_, geometry_, rims_now_, gas_);
+    for (std::size_t r = 0; r < gas_.size(); ++r)
+        if (gas_[r].closed) gas_[r].volume += share * (volume[r] - gas_[r].volume);
 }
 
 /// What went wrong in this step, before anything has moved; empty when nothing has.
@@ -310,19 +330,22 @@ std::string MelpSolver::fault_of_step() const {
         if (!std::isfinite(squared_norm(coarse_.velocity[i])))
             return fmt::format("the velocity of coarse particle {} is not finite", i);
     for (const Gas& gas : gas_)
-        if (!(gas.volume > 0.0)) return fmt::format("bubble {} has no volume left", gas.region);
+        if (gas.closed && !(gas.volume > 0.0)) return fmt::format("bubble {} has no volume left", gas.region);
     return {};
 }
 
-/// Of mode 2 of the smallest bubble, in an empty space but for air_mass. [method sheet 14, V7]
+/// Of mode 2 of the smallest bubble, or of the first mode of a disk as large as the smallest film on wires, in an empty
+/// space but for air_mass. [method sheet 14, V7]
 double MelpSolver::slowest_period(const std::vector<Gas>& bubbles) const {
     const film::Material& material = input_.films->material;
     double shortest = std::numeric_limits<double>::infinity();
     for (const Gas& gas : bubbles) {
-        const double radius = std::cbrt(0.75 * gas.volume / std::numbers::pi);
+        const double radius = gas.radius();
         const double mass =
             options_.liquid_density * material.thickness + options_.air_mass * material.air_density * radius;
-        shortest = std::min(shortest, std::numbers::pi * radius * std::sqrt(mass / material.film_tension()));
+        constexpr double kDrum = 2.404825557695773;  // first zero of the Bessel function J_0
+        const double wave = gas.closed ? std::numbers::pi : 2.0 * std::numbers::pi / kDrum;
+        shortest = std::min(shortest, wave * radius * std::sqrt(mass / material.film_tension()));
     }
     return shortest;
 }

@@ -6,6 +6,7 @@
 #include "lamella/solvers/melp/normal_motion.h"
 #include "lamella/solvers/melp/options.h"
 #include "lamella/solvers/melp/particles.h"
+#include "lamella/solvers/melp/rims.h"
 #include "lamella/solvers/melp/surfactant.h"
 #include "lamella/solvers/melp/transfer.h"
 
@@ -39,6 +40,7 @@ public:
     const CoarseParticles& coarse() const { return coarse_; }
     const FineParticles& fine() const { return fine_; }
     const std::vector<Gas>& gas() const { return gas_; }
+    const std::vector<RimPiece>& rims() const { return rims_now_; }
     const Geometry& geometry() const { return geometry_; }
     const Films& films() const { return films_; }
     double spacing() const { return spacing_; }
@@ -56,6 +58,8 @@ private:
     void give_to_fine(double dt);
     void move_coarse(double dt, const NormalStep& step);
     void move_fine(double dt);
+    void set_rims(double time);
+    void keep_coarse_inside();
     void update_shape();
     void update_liquid();
     void give_back(const std::vector<Vec3>& momentum);
@@ -77,13 +81,15 @@ private:
     FineParticles fine_;
     std::vector<Gas> gas_;
     std::vector<EvenFilm> even_;
+    Rims rims_;
     double spacing_ = 0.0;
     double time_ = 0.0;
     std::int64_t steps_ = 0;
     double step_ = 0.0;            ///< the last one
     double initial_liquid_ = 0.0;  ///< [m^3]
 
-    // What follows from the above: set by update_shape and update_liquid.
+    // What follows from the above: set by set_rims, update_shape and update_liquid.
+    std::vector<RimPiece> rims_now_;
     Geometry geometry_;
     std::optional<Transfer> transfer_;
     Films films_;

@@ -28,16 +28,19 @@ struct Pairs {
     std::vector<double> own;    ///< tau_i per particle
     std::vector<double> same;   ///< per entry of neighbors.same
     std::vector<double> other;  ///< per entry of neighbors.other
+    std::vector<double> image;  ///< per entry of images
 };
 
 Pairs pair_strengths(const NormalProblem& p) {
     const Neighbors& same = p.geometry.neighbors.same;
     const Neighbors& other = p.geometry.neighbors.other;
+    const Images& images = p.geometry.images;
     const std::vector<double>& a = p.geometry.area;
     Pairs pairs;
     pairs.own.resize(a.size());
     pairs.same.resize(same.index.size());
     pairs.other.resize(other.index.size());
+    pairs.image.resize(images.index.size());
     std::vector<double> toward(a.size());  // sigma f'
     parallel_for(a.size(), [&](std::size_t i) {
         double gamma = 0.0;
@@ -47,12 +50,13 @@ Pairs pair_strengths(const NormalProblem& p) {
         toward[i] = p.interface_tension[i] * c.other;
     });
     parallel_for(a.size(), [&](std::size_t i) {
-        const auto strength = [&](const Neighbors& list, std::size_t k, const std::vector<double>& tension) {
+        const auto strength = [&](const auto& list, std::size_t k, const std::vector<double>& tension) {
             const std::size_t j = list.index[k];
             return 0.5 * (tension[i] + tension[j]) * (a[i] * a[j]) * list.laplacian[k];
         };
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) pairs.same[k] = strength(same, k, pairs.own);
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) pairs.other[k] = strength(other, k, toward);
+        for (std::size_t k = images.begin(i); k < images.end(i); ++k) pairs.image[k] = strength(images, k, pairs.own);
     });
     return pairs;
 }
@@ -68,6 +72,8 @@ std::vector<double> forces(const NormalProblem& p, const Pairs& pairs, const std
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) pull += pairs.same[k] * (x[same.index[k]] - x[i]);
         const Neighbors& other = g.neighbors.other;
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) pull += pairs.other[k] * (x[other.index[k]] - x[i]);
+        const Images& images = g.images;
+        for (std::size_t k = images.begin(i); k < images.end(i); ++k) pull += pairs.image[k] * (images.place[k] - x[i]);
         force[i] =
             dot(pull, g.normal[i]) + p.gas[region_of(p.coarse, i)].gauge_pressure(p.outside_pressure) * gas_area[i];
     });
@@ -92,7 +98,7 @@ std::vector<std::size_t> clusters(const NormalProblem& p) {
     return cluster;
 }
 
-/// Bubbles that touch, free of wires: films push and twist them by nothing as a whole. Forces that have lost their part
+/// Bubbles that touch, free of rims: films push and twist them by nothing as a whole. Forces that have lost their part
 /// along the film do, a little. [method sheet 16.4 c']
 class FreeCluster {
 public:
@@ -152,7 +158,7 @@ std::vector<FreeCluster> free_clusters(const NormalProblem& p) {
     std::vector<FreeCluster> free;
     for (std::vector<std::size_t>& group : members) {
         const bool held = std::any_of(group.begin(), group.end(),
-                                      [&](std::size_t i) { return !p.gas[region_of(p.coarse, i)].closed; });
+                                      [&](std::size_t i) { return p.gas[region_of(p.coarse, i)].held; });
         if (!group.empty() && !held) free.emplace_back(p, std::move(group));
     }
     return free;
@@ -167,7 +173,7 @@ std::vector<double> gas_areas(const NormalProblem& p) {
     std::vector<std::vector<std::size_t>> members(p.gas.size());
     for (std::size_t i = 0; i < area.size(); ++i) members[region_of(p.coarse, i)].push_back(i);
     for (std::size_t r = 0; r < members.size(); ++r)
-        if (p.gas[r].closed && !members[r].empty())
+        if (p.gas[r].closed && !p.gas[r].held && !members[r].empty())
             FreeCluster(p, std::move(members[r])).remove_resultant(area, nothing, p.geometry.area);
     return area;
 }
@@ -186,6 +192,9 @@ public:
             for (std::size_t k = same.begin(i); k < same.end(i); ++k)
                 sum -= pairs.same[k] * (free ? dot(n[i], n[same.index[k]]) : 1.0);
             for (std::size_t k = other.begin(i); k < other.end(i); ++k) sum -= pairs.other[k];
+            const Images& images = p.geometry.images;
+            for (std::size_t k = images.begin(i); k < images.end(i); ++k)
+                sum -= pairs.image[k] * dot(n[i], images.normal[k]);
             diagonal_[i] = sum;
         });
     }
@@ -202,6 +211,18 @@ public:
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum += pairs_.same[k] * v[same.index[k]];
         for (std::size_t k = other.begin(i); k < other.end(i); ++k)
             sum += pairs_.other[k] * dot(n[i], n[other.index[k]]) * v[other.index[k]];
+        const Images& images = p_.geometry.images;
+        for (std::size_t k = images.begin(i); k < images.end(i); ++k)
+            sum += pairs_.image[k] * images.mirrors[images.mirror[k]].sign * v[images.index[k]];
+        return sum;
+    }
+
+    /// What the motion of rims adds to (J_film v)_i.
+    double of_rims(std::size_t i) const {
+        const Images& images = p_.geometry.images;
+        double sum = 0.0;
+        for (std::size_t k = images.begin(i); k < images.end(i); ++k)
+            sum += pairs_.image[k] * dot(images.mirrors[images.mirror[k]].drift, images.normal[k]);
         return sum;
     }
 
@@ -240,7 +261,7 @@ NormalStep move_along_normals(const NormalProblem& p) {
         const double a = gas_area[i];
         inertia[i] = p.mass[i] * (1.0 + p.dt * p.damping);
         given[i] = p.mass[i] * p.velocity[i] + p.dt * (force[i] + dot(p.external[i], p.geometry.normal[i]));
-        right[i] = given[i] + mixed * stiffness.apply(p.velocity, i);
+        right[i] = given[i] + mixed * stiffness.apply(p.velocity, i) + p.theta * p.dt * p.dt * stiffness.of_rims(i);
         scale[i] = 1.0 / (inertia[i] - implicit * stiffness.diagonal(i) + gas[region_of(p.coarse, i)] * a * a);
     });
     const auto apply = [&](const std::vector<double>& v, std::vector<double>& y) {

@@ -5,8 +5,23 @@
 
 namespace lamella::melp {
 
+/// What the rims of films on wires are.
+enum class RimHold {
+    kWire,      ///< held at their places, the same air on both sides
+    kPlate,     ///< held on a plate that closes in the gas
+    kWetPlate,  ///< sliding on such a plate
+};
+/// What surfactant films start with.
+enum class StartSurfactant {
+    kProportional,  ///< to the thickness
+    kUniform,       ///< the same everywhere
+};
+
 /// How films differ from even, resting ones at the start.
 struct StartOptions {
+    double thickness_top = 0.0;
+    double thickness_bottom = 0.0;
+    StartSurfactant surfactant = StartSurfactant::kProportional;
     double thickness_noise = 0.0;
     double noise_length = 0.0;
     int noise_octaves = 2;
@@ -15,8 +30,16 @@ struct StartOptions {
 
     template <class Visitor>
     void visit(Visitor&& option) {
+        option("thickness_top", thickness_top, sim::at_least(0.0),
+               {"where a film is highest, linear in height down to thickness_bottom; 0: material.thickness", "length"});
+        option("thickness_bottom", thickness_bottom, sim::at_least(0.0),
+               {"where it is lowest; 0: material.thickness", "length"});
+        option("surfactant", surfactant,
+               sim::choices<StartSurfactant>({{"proportional", StartSurfactant::kProportional},
+                                              {"uniform", StartSurfactant::kUniform}}),
+               {"of films of uneven thickness: proportional to it, or the same everywhere"});
         option("thickness_noise", thickness_noise, sim::between(0.0, 1.2),
-               {"amplitude of the first octave, over the thickness; surfactant goes with the liquid", "-", "[Deng22]"});
+               {"amplitude of the first octave, over the thickness", "-", "[Deng22]"});
         option("noise_length", noise_length, sim::at_least(0.0),
                {"wave length of the first octave; 0: 1.4 times the largest bubble's radius", "length", "[Deng22]"});
         option("noise_octaves", noise_octaves, sim::between(1, 12),
@@ -29,6 +52,7 @@ struct StartOptions {
 
 /// [melp] of a scene.
 struct Options {
+    RimHold rim = RimHold::kWire;
     int fine_ratio = 16;
     double support_radius = 3.0;
     double theta = 0.51;
@@ -54,6 +78,11 @@ struct Options {
 
     template <class Visitor>
     void visit(Visitor&& option) {
+        option("rim", rim,
+               sim::choices<RimHold>(
+                   {{"wire", RimHold::kWire}, {"plate", RimHold::kPlate}, {"wet_plate", RimHold::kWetPlate}}),
+               {"what [[film]] ends on: wire: held, the same air on both sides; plate: held on a plate that closes in "
+                "the gas of a hemisphere; wet_plate: sliding on such a plate"});
         option("fine_ratio", fine_ratio, sim::between(0, 1000),
                {"fine particles, the liquid, per coarse one; 0: films of even thickness without a flow in them", "-",
                 "[Deng22]: 16 to 64"});
