@@ -44,6 +44,41 @@ fine_ratio = 0
 damping = 500.0
 )";
 
+/// A film on a frame, one side of which moves, that drains.
+constexpr const char* kFrame = R"(
+seed = 5
+[material]
+gravity = [0.0, 0.0, -9.81]
+[[film]]
+shape = "rectangle"
+u = [0.03, 0.0, 0.0]
+v = [0.0, 0.0, 0.03]
+[[wire]]
+shape = "segment"
+from = [0.0, 0.0, 0.03]
+to = [0.03, 0.0, 0.03]
+velocity = [0.0, 0.3, 0.1]
+spin = [0.0, 0.0, 2.0]
+[resolution]
+edge_length = 0.003
+[melp]
+start.thickness_noise = 0.5
+)";
+
+/// Half a bubble on a wet plate.
+constexpr const char* kHalfBubble = R"(
+seed = 7
+[[film]]
+shape = "hemisphere"
+radius = 0.02
+[resolution]
+edge_length = 0.003
+[melp]
+rim = "wet_plate"
+start.thickness_noise = 0.5
+start.mode_amplitude = 0.05
+)";
+
 void advance(MelpSolver& solver, int steps) {
     for (int k = 0; k < steps; ++k) solver.advance(1e9);
 }
@@ -55,7 +90,7 @@ test::StateMemory state_of(const MelpSolver& solver) {
 }
 
 TEST(MelpSolver, GivesTheSameBitsOnOneAndTwoThreads) {
-    for (const char* scene : {kBusy, kPair}) {
+    for (const char* scene : {kBusy, kPair, kFrame, kHalfBubble}) {
         std::vector<test::StateMemory> states;
         for (const int threads : {1, 2}) {
             const ThreadLimit limit(threads);
@@ -71,7 +106,7 @@ TEST(MelpSolver, GivesTheSameBitsOnOneAndTwoThreads) {
 
 TEST(MelpSolver, GoesOnFromACheckpointWithTheSameBits) {
     constexpr int kSteps = 40;
-    for (const char* scene : {kBusy, kPair}) {
+    for (const char* scene : {kBusy, kPair, kFrame, kHalfBubble}) {
         auto whole = solver_of(scene);
         whole->start({});
         advance(*whole, kSteps);
@@ -108,7 +143,10 @@ TEST(MelpSolver, RefusesACheckpointThatIsNone) {
 
 TEST(MelpSolver, RefusesFilmsAndOptionsThatItDoesNotKnow) {
     const std::string ball = "[[bubble]]\nradius = 0.02\n";
-    EXPECT_THROW(solver_of("[[film]]\nshape = \"disk\"\n"), InputError);
+    EXPECT_THROW(solver_of("[[film]]\nshape = \"disk\"\n[melp]\nrim = \"plate\"\n"), InputError);
+    EXPECT_THROW(solver_of("[[film]]\nshape = \"frame\"\n"), InputError);
+    EXPECT_THROW(solver_of("[[film]]\nshape = \"hemisphere\"\n[melp]\nstart.mode_amplitude = 0.1\n"), InputError);
+    EXPECT_THROW(solver_of(std::string(kFrame) + "[[wire]]\nshape = \"ring\"\nblow = 1.0\n"), InputError);
     EXPECT_THROW(solver_of("[[film]]\nshape = \"kelvin\"\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[[event]]\ntime = 1.0\nregion = 1\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[[tension]]\nb = 1\nfactor = 2.0\n"), InputError);
@@ -132,13 +170,42 @@ TEST(MelpSolver, LandsOnTheTimeLimit) {
 }
 
 TEST(MelpSolver, ConservesLiquidAndSurfactantToRounding) {
-    auto solver = solver_of(kBusy);
+    for (const char* scene : {kBusy, kFrame, kHalfBubble}) {
+        auto solver = solver_of(scene);
+        solver->start({});
+        const double liquid = scalar(*solver, "liquid_mass"), surfactant = scalar(*solver, "surfactant_amount");
+        advance(*solver, 100);
+        EXPECT_NEAR(scalar(*solver, "liquid_mass") / liquid, 1.0, 1e-12);
+        EXPECT_NEAR(scalar(*solver, "surfactant_amount") / surfactant, 1.0, 1e-12);
+        EXPECT_EQ(scalar(*solver, "strays"), 0.0);
+    }
+}
+
+/// A ring carries its film along, across the film and along it, and turns it.
+TEST(MelpSolver, MovesAFilmWithItsRing) {
+    auto solver = solver_of(R"(
+[[film]]
+shape = "disk"
+radius = 0.02
+[[wire]]
+radius = 0.02
+velocity = [0.1, 0.0, 0.3]
+spin = [1.0, 0.0, 0.0]
+[resolution]
+edge_length = 0.002
+[melp]
+damping = 1000.0
+)");
     solver->start({});
-    const double liquid = scalar(*solver, "liquid_mass"), surfactant = scalar(*solver, "surfactant_amount");
-    advance(*solver, 100);
-    EXPECT_NEAR(scalar(*solver, "liquid_mass") / liquid, 1.0, 1e-12);
-    EXPECT_NEAR(scalar(*solver, "surfactant_amount") / surfactant, 1.0, 1e-12);
+    const double end = 0.2;
+    while (solver->time() < end) solver->advance(end);
+    const Vec3 center = end * Vec3{{0.1, 0.0, 0.3}}, axis{{0.0, -std::sin(end), std::cos(end)}};
+    for (const Vec3& x : solver->coarse().position) {
+        EXPECT_NEAR(dot(x - center, axis), 0.0, 3e-4);
+        EXPECT_LT(norm(x - center), 0.02);
+    }
     EXPECT_EQ(scalar(*solver, "strays"), 0.0);
+    EXPECT_LT(scalar(*solver, "density_spread"), 0.3);
 }
 
 TEST(MelpSolver, ReportsTheSameNamesEveryTime) {

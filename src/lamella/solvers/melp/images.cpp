@@ -54,8 +54,8 @@ Images find_images(std::span<const RimPiece> pieces,
                 const std::uint32_t j = source[m];
                 const Mirror* back = with_key(mine, images.mirrors[m].key);
                 if (region[i] != region[j] || back == nullptr) return;
-                const double square = 0.5 * (squared_norm(position[i] - place[m]) +
-                                             squared_norm(position[j] - back->place(position[i])));
+                const double square =
+                    0.5 * (squared_norm(position[i] - place[m]) + squared_norm(position[j] - back->place(position[i])));
                 if (square >= reach) return;
                 const double agree = 0.5 * (dot(normal[i], images.mirrors[m].normal(normal[j])) +
                                             dot(normal[j], back->normal(normal[i])));

@@ -14,11 +14,11 @@ namespace lamella::melp {
 /// weights are symmetric, w of (i, picture of j) = w of (j, picture of i), by the mean of the two squared distances:
 /// for straight wires and plates these are equal.
 struct Images {
-    std::vector<std::uint32_t> start;   ///< size + 1, or empty where no film has a rim
-    std::vector<std::uint32_t> index;   ///< whose picture
-    std::vector<double> weight;         ///< as in Neighbors
+    std::vector<std::uint32_t> start;  ///< size + 1, or empty where no film has a rim
+    std::vector<std::uint32_t> index;  ///< whose picture
+    std::vector<double> weight;        ///< as in Neighbors
     std::vector<double> laplacian;
-    std::vector<Vec3> place;            ///< of the picture [m]
+    std::vector<Vec3> place;  ///< of the picture [m]
     std::vector<Vec3> normal;
     std::vector<std::uint32_t> mirror;  ///< place in `mirrors`
     std::vector<Mirror> mirrors;

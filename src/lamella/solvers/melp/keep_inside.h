@@ -11,10 +11,10 @@ namespace lamella::melp {
 /// Particles of films near their rims.
 struct RimNeighbors {
     std::span<const RimPiece> rims;
-    std::span<const Vec3> film;                 ///< coarse particles: they tell on which side of a wire the film is
+    std::span<const Vec3> film;  ///< coarse particles: they tell on which side of a wire the film is
     std::span<const std::int32_t> film_region;
-    double spacing;                             ///< of these [m]
-    double margin;                              ///< how near to a rim particles may come [m]
+    double spacing;  ///< of these [m]
+    double margin;   ///< how near to a rim particles may come [m]
 };
 
 /// Particles that have come nearer to a rim than the margin, or beyond it by less than a spacing, are put back; of

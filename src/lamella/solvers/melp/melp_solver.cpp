@@ -180,6 +180,7 @@ NormalStep MelpSolver::push_along_normals(double dt) {
     NormalStep step = move_along_normals({.coarse = coarse_,
                                           .geometry = geometry_,
                                           .gas = gas_,
+                                          .rims = rims_now_,
                                           .outside_pressure = options_.outside_pressure,
                                           .mass = mass,
                                           .interface_tension = films_.tension,
@@ -202,7 +203,8 @@ NormalStep MelpSolver::push_along_normals(double dt) {
 /// the velocity is made of these: a uniform velocity leaves nothing, a swing in mode 2 the square of a hundredth.
 void MelpSolver::filter_short_waves() {
     if (options_.grid_filter == 0.0) return;
-    const std::vector<Vec3> rough = roughness(geometry_, roughness(geometry_, coarse_.velocity, Beyond::kVelocity), Beyond::kDifference);
+    const std::vector<Vec3> rough =
+        roughness(geometry_, roughness(geometry_, coarse_.velocity, Beyond::kVelocity), Beyond::kDifference);
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         const Vec3& n = geometry_.normal[i];
         coarse_.velocity[i] -= (options_.grid_filter * dot(rough[i], n)) * n;

@@ -98,11 +98,50 @@ std::vector<std::size_t> clusters(const NormalProblem& p) {
     return cluster;
 }
 
+constexpr std::size_t kRigid = 6;
+/// A force and its moment over a length.
+using Rigid = std::array<double, kRigid>;
+
+/// Directions of forces and moments.
+std::vector<Rigid> all_directions() {
+    std::vector<Rigid> all(kRigid);
+    for (std::size_t a = 0; a < kRigid; ++a) all[a][a] = 1.0;
+    return all;
+}
+
+/// Those in which half a bubble on a plate can slide and turn; those in which its gas does not push it, too: only along
+/// the plate's normal does the plate take part of the push.
+enum class OnPlate { kSlides, kGas };
+std::vector<Rigid> directions_on(const Vec3& plate_normal, OnPlate what) {
+    const Frame f = frame_of(plate_normal);
+    std::vector<Rigid> directions;
+    const auto add = [&](const Vec3& e, std::size_t at) {
+        Rigid d{};
+        for (std::size_t k = 0; k < 3; ++k) d[at + k] = e[k];
+        directions.push_back(d);
+    };
+    add(f.e1, 0);
+    add(f.e2, 0);
+    add(f.normal, 3);
+    if (what == OnPlate::kSlides) return directions;
+    add(f.e1, 3);
+    add(f.e2, 3);
+    return directions;
+}
+
+/// What holds a region; nothing for one that flies.
+const RimPiece* rim_of(const NormalProblem& p, std::size_t region) {
+    for (const RimPiece& rim : p.rims)
+        if (static_cast<std::size_t>(rim.region) == region) return &rim;
+    return nullptr;
+}
+
 /// Bubbles that touch, free of rims: films push and twist them by nothing as a whole. Forces that have lost their part
-/// along the film do, a little. [method sheet 16.4 c']
+/// along the film do, a little. [method sheet 16.4 c'] Half a bubble on a plate is free in some directions.
 class FreeCluster {
 public:
-    FreeCluster(const NormalProblem& p, std::vector<std::size_t> members) : p_(p), members_(std::move(members)) {
+    FreeCluster(const NormalProblem& p, std::vector<std::size_t> members, std::vector<Rigid> directions)
+        : p_(p), members_(std::move(members)), directions_(std::move(directions)) {
         for (const std::size_t i : members_) {
             center_ += p.geometry.area[i] * p.coarse.position[i];
             length_ += p.geometry.area[i];
@@ -116,37 +155,39 @@ public:
     void remove_resultant(std::vector<double>& values,
                           std::span<const Vec3> beside,
                           std::span<const double> share) const {
-        std::array<double, kRigid * kRigid> matrix{};
-        std::array<double, kRigid> resultant{};
+        const std::size_t count = directions_.size();
+        std::vector<double> matrix(count * count, 0.0), resultant(count, 0.0);
         for (const std::size_t i : members_) {
-            const Rigid e = rigid(i, p_.geometry.normal[i]);
-            const Rigid f = rigid(i, values[i] * p_.geometry.normal[i] + beside[i]);
-            for (std::size_t a = 0; a < kRigid; ++a) {
+            const std::vector<double> e = rigid(i, p_.geometry.normal[i]);
+            const std::vector<double> f = rigid(i, values[i] * p_.geometry.normal[i] + beside[i]);
+            for (std::size_t a = 0; a < count; ++a) {
                 resultant[a] += f[a];
-                for (std::size_t b = 0; b < kRigid; ++b) matrix[a * kRigid + b] += share[i] * e[a] * e[b];
+                for (std::size_t b = 0; b < count; ++b) matrix[a * count + b] += share[i] * e[a] * e[b];
             }
         }
         // A sphere cannot be twisted by forces along its normals: such directions stay as they are.
         constexpr double kCannot = 1e-4;
-        const auto z = linalg::solve_symmetric(kRigid, matrix, resultant, kCannot).x;
+        const auto z = linalg::solve_symmetric(count, matrix, resultant, kCannot).x;
         for (const std::size_t i : members_) {
-            const Rigid e = rigid(i, p_.geometry.normal[i]);
-            for (std::size_t a = 0; a < kRigid; ++a) values[i] -= share[i] * e[a] * z[a];
+            const std::vector<double> e = rigid(i, p_.geometry.normal[i]);
+            for (std::size_t a = 0; a < count; ++a) values[i] -= share[i] * e[a] * z[a];
         }
     }
 
 private:
-    static constexpr std::size_t kRigid = 6;
-    using Rigid = std::array<double, kRigid>;
-
-    /// A vector at a particle and its moment about the center, over the cluster's size.
-    Rigid rigid(std::size_t i, const Vec3& f) const {
+    /// A vector at a particle and its moment about the center, over the cluster's size, in the cluster's directions.
+    std::vector<double> rigid(std::size_t i, const Vec3& f) const {
         const Vec3 moment = cross(p_.coarse.position[i] - center_, f) / length_;
-        return {f[0], f[1], f[2], moment[0], moment[1], moment[2]};
+        const Rigid all{f[0], f[1], f[2], moment[0], moment[1], moment[2]};
+        std::vector<double> along(directions_.size(), 0.0);
+        for (std::size_t d = 0; d < along.size(); ++d)
+            for (std::size_t a = 0; a < kRigid; ++a) along[d] += directions_[d][a] * all[a];
+        return along;
     }
 
     const NormalProblem& p_;
     std::vector<std::size_t> members_;
+    std::vector<Rigid> directions_;
     Vec3 center_;
     double length_ = 0.0;
 };
@@ -157,9 +198,14 @@ std::vector<FreeCluster> free_clusters(const NormalProblem& p) {
     for (std::size_t i = 0; i < p.coarse.size(); ++i) members[cluster_of[region_of(p.coarse, i)]].push_back(i);
     std::vector<FreeCluster> free;
     for (std::vector<std::size_t>& group : members) {
-        const bool held = std::any_of(group.begin(), group.end(),
-                                      [&](std::size_t i) { return p.gas[region_of(p.coarse, i)].held; });
-        if (!group.empty() && !held) free.emplace_back(p, std::move(group));
+        if (group.empty()) continue;
+        const RimPiece* rim = nullptr;
+        for (const std::size_t i : group)
+            if (p.gas[region_of(p.coarse, i)].held) rim = rim_of(p, region_of(p.coarse, i));
+        if (rim == nullptr)
+            free.emplace_back(p, std::move(group), all_directions());
+        else if (rim->kind == RimKind::kPlate)
+            free.emplace_back(p, std::move(group), directions_on(rim->b, OnPlate::kSlides));
     }
     return free;
 }
@@ -172,9 +218,12 @@ std::vector<double> gas_areas(const NormalProblem& p) {
     const std::vector<Vec3> nothing(area.size());
     std::vector<std::vector<std::size_t>> members(p.gas.size());
     for (std::size_t i = 0; i < area.size(); ++i) members[region_of(p.coarse, i)].push_back(i);
-    for (std::size_t r = 0; r < members.size(); ++r)
-        if (p.gas[r].closed && !p.gas[r].held && !members[r].empty())
-            FreeCluster(p, std::move(members[r])).remove_resultant(area, nothing, p.geometry.area);
+    for (std::size_t r = 0; r < members.size(); ++r) {
+        if (!p.gas[r].closed || members[r].empty()) continue;
+        const RimPiece* rim = rim_of(p, r);
+        auto directions = rim == nullptr ? all_directions() : directions_on(rim->b, OnPlate::kGas);
+        FreeCluster(p, std::move(members[r]), std::move(directions)).remove_resultant(area, nothing, p.geometry.area);
+    }
     return area;
 }
 

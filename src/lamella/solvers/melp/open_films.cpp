@@ -114,8 +114,9 @@ std::vector<OpenFilm> open_films(const film::Problem& films) {
             const VertexId a = face.vertices[k], b = face.vertices[(k + 1) % 3];
             normal[a] += area;
             if (++faces_at[{std::min(a, b), std::max(a, b)}] > 2)
-                throw InputError("melp: films on wires that meet along a border are not built yet; use solver "
-                                 "equilibrium or vortex_sheet");
+                throw InputError(
+                    "melp: films on wires that meet along a border are not built yet; use solver "
+                    "equilibrium or vortex_sheet");
         }
     }
     for (const mesh::FaceId f : mesh.faces.ids()) {
@@ -206,8 +207,8 @@ Sample on_rectangle(const Vec3& corner, const Vec3& u, const Vec3& v, std::size_
     const double h = std::sqrt(norm(cross(u, v)) / static_cast<double>(std::max(count, std::size_t{1})));
     const double row = h * std::sqrt(std::sqrt(0.75));  // equal triangles of area h^2 / 2
     const auto rows = static_cast<std::size_t>(std::max(std::round(norm(v) / row), 1.0));
-    const auto columns = static_cast<std::size_t>(
-        std::max(std::round(static_cast<double>(count) / static_cast<double>(rows)), 1.0));
+    const auto columns =
+        static_cast<std::size_t>(std::max(std::round(static_cast<double>(count) / static_cast<double>(rows)), 1.0));
     const Vec3 normal = cross(u, v) / norm(cross(u, v));
     Sample sample;
     for (std::size_t j = 0; j < rows; ++j)
@@ -249,7 +250,8 @@ Sample on_triangles(const std::vector<std::array<Vec3, 3>>& triangles, std::size
 
 Sample OpenFilm::sample(std::size_t count) const {
     switch (shape_) {
-        case Shape::kDisk: return on_disk(rims[0], count);
+        case Shape::kDisk:
+            return on_disk(rims[0], count);
         case Shape::kHalfSphere: {
             const auto& t = triangle_[0];
             const double side = dot((t[0] + t[1] + t[2]) / 3.0 - rims[0].a, rims[0].b);
@@ -257,7 +259,8 @@ Sample OpenFilm::sample(std::size_t count) const {
         }
         case Shape::kRectangle:
             return on_rectangle(rims[0].a, rims[0].b - rims[0].a, rims[1].b - rims[1].a, count);
-        case Shape::kMesh: break;
+        case Shape::kMesh:
+            break;
     }
     return on_triangles(triangle_, count);
 }

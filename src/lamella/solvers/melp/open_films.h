@@ -17,10 +17,10 @@ struct Sample {
 /// A film of the scene that ends on wires: all triangles between one pair of open regions.
 class OpenFilm {
 public:
-    std::int32_t back = 0;   ///< the region that the normals point away from; its number in frames
-    double area = 0.0;       ///< [m^2]
-    double volume = 0.0;     ///< between it and the plane of its rim [m^3]; 0 for films with several rims
-    std::vector<RimPiece> rims;                 ///< regions not set, corner_next within this list
+    std::int32_t back = 0;       ///< the region that the normals point away from; its number in frames
+    double area = 0.0;           ///< [m^2]
+    double volume = 0.0;         ///< between it and the plane of its rim [m^3]; 0 for films with several rims
+    std::vector<RimPiece> rims;  ///< regions not set, corner_next within this list
     std::vector<std::array<std::int32_t, 2>> wires;  ///< what moves the points of each piece
 
     /// Points spread over it, about `count` of them: along spirals on disks and half spheres, in staggered rows on

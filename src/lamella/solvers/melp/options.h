@@ -35,8 +35,8 @@ struct StartOptions {
         option("thickness_bottom", thickness_bottom, sim::at_least(0.0),
                {"where it is lowest; 0: material.thickness", "length"});
         option("surfactant", surfactant,
-               sim::choices<StartSurfactant>({{"proportional", StartSurfactant::kProportional},
-                                              {"uniform", StartSurfactant::kUniform}}),
+               sim::choices<StartSurfactant>(
+                   {{"proportional", StartSurfactant::kProportional}, {"uniform", StartSurfactant::kUniform}}),
                {"of films of uneven thickness: proportional to it, or the same everywhere"});
         option("thickness_noise", thickness_noise, sim::between(0.0, 1.2),
                {"amplitude of the first octave, over the thickness", "-", "[Deng22]"});

@@ -73,9 +73,7 @@ struct Gas {
     double gauge_pressure(double outside) const { return closed ? amount / volume - outside : 0.0; }
 
     /// Of the bubble, or of half a one on a plate, or of a disk as large as an open film [m].
-    double radius() const {
-        return closed ? std::cbrt((held ? 1.5 : 0.75) * volume / std::numbers::pi) : film_radius;
-    }
+    double radius() const { return closed ? std::cbrt((held ? 1.5 : 0.75) * volume / std::numbers::pi) : film_radius; }
 };
 
 }  // namespace lamella::melp

@@ -33,10 +33,18 @@ Vec3 unit(const Vec3& x) { return x / norm(x); }
 Mirror mirror_at(const RimPiece& piece, std::uint32_t index, const Vec3& foot, const Vec3& x) {
     Mirror mirror{};
     switch (piece.kind) {
-        case RimKind::kLine: mirror.map = half_turn(unit(piece.b - piece.a), 1.0); break;
-        case RimKind::kRing: mirror.map = half_turn(unit(cross(piece.b, foot - piece.a)), 1.0); break;
-        case RimKind::kPlate: mirror.map = half_turn(piece.b, -1.0); break;
-        case RimKind::kBall: mirror.map = half_turn(unit(x - piece.a), -1.0); break;
+        case RimKind::kLine:
+            mirror.map = half_turn(unit(piece.b - piece.a), 1.0);
+            break;
+        case RimKind::kRing:
+            mirror.map = half_turn(unit(cross(piece.b, foot - piece.a)), 1.0);
+            break;
+        case RimKind::kPlate:
+            mirror.map = half_turn(piece.b, -1.0);
+            break;
+        case RimKind::kBall:
+            mirror.map = half_turn(unit(x - piece.a), -1.0);
+            break;
     }
     mirror.sign = piece.slides() ? 1.0 : -1.0;
     mirror.shift = foot - mirror.map * foot;
@@ -62,7 +70,8 @@ std::optional<Vec3> RimPiece::foot(const Vec3& x) const {
             if (!(length > 0.0)) return std::nullopt;
             return a + (radius / length) * arm;
         }
-        case RimKind::kPlate: return x - dot(x - a, b) * b;
+        case RimKind::kPlate:
+            return x - dot(x - a, b) * b;
         case RimKind::kBall: {
             const double distance = norm(x - a);
             if (!(distance > 0.0)) return std::nullopt;
@@ -126,11 +135,8 @@ double Rims::fastest() const {
     return fastest;
 }
 
-void append_mirrors(std::span<const RimPiece> pieces,
-                    std::int32_t region,
-                    const Vec3& x,
-                    double reach,
-                    std::vector<Mirror>& mirrors) {
+void append_mirrors(
+    std::span<const RimPiece> pieces, std::int32_t region, const Vec3& x, double reach, std::vector<Mirror>& mirrors) {
     const auto near = [&](const RimPiece& piece) -> std::optional<Vec3> {
         if (piece.region != region) return std::nullopt;
         std::optional<Vec3> foot = piece.foot(x);
@@ -148,9 +154,8 @@ void append_mirrors(std::span<const RimPiece> pieces,
         const Vec3 back = pieces[k].a - pieces[k].b, on = pieces[next].b - pieces[next].a;
         if (!other || dot(back, on) < std::cos(kWidestCorner) * norm(back) * norm(on)) continue;
         const Mirror two = mirror_at(pieces[next], 0, *other, x);
-        mirrors.push_back({product(two.map, one.map), two.map * one.shift + two.shift,
-                           two.map * one.drift + two.drift, one.sign * two.sign,
-                           static_cast<std::uint32_t>(pieces.size() + k)});
+        mirrors.push_back({product(two.map, one.map), two.map * one.shift + two.shift, two.map * one.drift + two.drift,
+                           one.sign * two.sign, static_cast<std::uint32_t>(pieces.size() + k)});
     }
 }
 

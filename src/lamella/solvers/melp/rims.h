@@ -28,10 +28,10 @@ enum class RimKind : std::uint8_t {
 /// Where the film beyond a rim is: place(x) = map x + shift, velocity(w) = map w + drift.
 struct Mirror {
     Tensor map;
-    Vec3 shift;          ///< [m]
-    Vec3 drift;          ///< [m/s]
-    double sign = 1.0;   ///< of velocities along the normals: -1 behind a wire, which the film turns about
-    std::uint32_t key;   ///< which pieces it is the picture behind: the same for all particles
+    Vec3 shift;         ///< [m]
+    Vec3 drift;         ///< [m/s]
+    double sign = 1.0;  ///< of velocities along the normals: -1 behind a wire, which the film turns about
+    std::uint32_t key;  ///< which pieces it is the picture behind: the same for all particles
 
     Vec3 place(const Vec3& x) const { return map * x + shift; }
     Vec3 velocity(const Vec3& w) const { return map * w + drift; }
@@ -42,10 +42,10 @@ struct Mirror {
 struct RimPiece {
     RimKind kind = RimKind::kLine;
     std::int32_t region = 0;
-    Vec3 a{}, b{};                 ///< see RimKind [m]
-    double radius = 0.0;           ///< of a ring or a ball [m]
+    Vec3 a{}, b{};                    ///< see RimKind [m]
+    double radius = 0.0;              ///< of a ring or a ball [m]
     Vec3 velocity_a{}, velocity_b{};  ///< of the points a and b of a line [m/s]; of the center, and the spin [1/s]
-    std::int32_t corner_next = -1; ///< of a line: the piece that begins where it ends, if they meet at a right angle
+    std::int32_t corner_next = -1;    ///< of a line: the piece that begins where it ends, if they meet at a right angle
 
     /// The point of the piece nearest to x; nothing where that is beyond the ends of a line.
     std::optional<Vec3> foot(const Vec3& x) const;
@@ -57,8 +57,8 @@ struct RimPiece {
 /// Everything that holds the films of a scene: it moves as it is told, so it has no state of its own.
 class Rims {
 public:
-    /// A piece as it is at time 0, and the wires that move its points, -1: none. Those of a line are its ends; the others
-    /// move as a whole, with the first wire.
+    /// A piece as it is at time 0, and the wires that move its points, -1: none. Those of a line are its ends; the
+    /// others move as a whole, with the first wire.
     void add(const RimPiece& piece, std::int32_t wire_a, std::int32_t wire_b);
     void set_wires(std::vector<film::Wire> wires) { wires_ = std::move(wires); }
 
@@ -80,10 +80,7 @@ private:
 
 /// Pictures of the film around `x` behind the pieces of its region that are within `reach`, and behind two that meet
 /// at a right angle near it.
-void append_mirrors(std::span<const RimPiece> pieces,
-                    std::int32_t region,
-                    const Vec3& x,
-                    double reach,
-                    std::vector<Mirror>& mirrors);
+void append_mirrors(
+    std::span<const RimPiece> pieces, std::int32_t region, const Vec3& x, double reach, std::vector<Mirror>& mirrors);
 
 }  // namespace lamella::melp

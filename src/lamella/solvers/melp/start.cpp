@@ -275,10 +275,10 @@ void append(Start& start,
         gas.amount = (options.outside_pressure + gauge) * target_volume;
     }
     start.gas.push_back(gas);
-    start.even.push_back(region.fine.position.empty() ? EvenFilm{material.thickness * region.area,
-                                                                 options.surfactant_concentration * region.area,
-                                                                 region.held}
-                                                      : EvenFilm{.held = region.held});
+    start.even.push_back(
+        region.fine.position.empty()
+            ? EvenFilm{material.thickness * region.area, options.surfactant_concentration * region.area, region.held}
+            : EvenFilm{.held = region.held});
 }
 
 std::size_t particles_on(double area, double spacing) {
@@ -330,16 +330,16 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
         RegionStart region{.area = ball ? 4.0 * std::numbers::pi * ball->radius * ball->radius : surface.area,
                            .velocity = films.velocity[r]};
         region.volume = ball ? ball->radius * region.area / 3.0 : volume[r];
-        region.coarse =
-            ball ? on_ball(*ball, particles_on(region.area, h)) : Sample{surface.vertex, surface.normal};
+        region.coarse = ball ? on_ball(*ball, particles_on(region.area, h)) : Sample{surface.vertex, surface.normal};
         const std::size_t fine = static_cast<std::size_t>(options.fine_ratio) * region.coarse.position.size();
         region.fine = ball ? on_ball(*ball, fine) : on_triangles(surface.triangle, fine);
         total_area += region.area;
-        append(start, std::move(region), static_cast<std::int32_t>(index(r)), films.mesh.regions[r].target_volume, films.material, options,
-               thickness);
+        append(start, std::move(region), static_cast<std::int32_t>(index(r)), films.mesh.regions[r].target_volume,
+               films.material, options, thickness);
     }
     for (const OpenFilm& film : open) {
-        RegionStart region{.area = film.area, .volume = options.rim == RimHold::kWire ? 0.0 : film.volume, .held = true};
+        RegionStart region{
+            .area = film.area, .volume = options.rim == RimHold::kWire ? 0.0 : film.volume, .held = true};
         if (film.half_sphere()) region.center = film.rims[0].a;
         region.coarse = film.sample(particles_on(film.area, h));
         if (options.fine_ratio > 0)

@@ -24,8 +24,8 @@ struct Start {
 
 /// Every closed region of the problem gets particles on all of its surface, normals outward; a film between two of them
 /// so has two layers. Spheres get Fibonacci's spiral, which is even to 0.1 % [method sheet 16.1], other shapes the
-/// vertices of their mesh. Films on wires get particles as OpenFilm says. Gas has the pressure that the virial theorem gives: p - p_out = 2/3 film tension * area /
-/// volume, 4 sigma / R for a sphere.
+/// vertices of their mesh. Films on wires get particles as OpenFilm says. Gas has the pressure that the virial theorem
+/// gives: p - p_out = 2/3 film tension * area / volume, 4 sigma / R for a sphere.
 /// @throws InputError  films that this solver does not know, or no bubble
 Start start_particles(const film::Problem& films, const Options& options, std::uint64_t seed);
 
