@@ -79,6 +79,24 @@ start.thickness_noise = 0.5
 start.mode_amplitude = 0.05
 )";
 
+/// A bubble that is pricked after a few steps.
+constexpr const char* kBurst = R"(
+seed = 2
+[material]
+gravity = [0.0, 0.0, -9.81]
+[[bubble]]
+radius = 0.02
+[[event]]
+kind = "puncture"
+time = 1e-4
+center = [0.02, 0.0, 0.0]
+radius = 0.006
+[resolution]
+edge_length = 0.0025
+[melp]
+start.thickness_noise = 0.3
+)";
+
 void advance(MelpSolver& solver, int steps) {
     for (int k = 0; k < steps; ++k) solver.advance(1e9);
 }
@@ -90,7 +108,7 @@ test::StateMemory state_of(const MelpSolver& solver) {
 }
 
 TEST(MelpSolver, GivesTheSameBitsOnOneAndTwoThreads) {
-    for (const char* scene : {kBusy, kPair, kFrame, kHalfBubble}) {
+    for (const char* scene : {kBusy, kPair, kFrame, kHalfBubble, kBurst}) {
         std::vector<test::StateMemory> states;
         for (const int threads : {1, 2}) {
             const ThreadLimit limit(threads);
@@ -106,7 +124,7 @@ TEST(MelpSolver, GivesTheSameBitsOnOneAndTwoThreads) {
 
 TEST(MelpSolver, GoesOnFromACheckpointWithTheSameBits) {
     constexpr int kSteps = 40;
-    for (const char* scene : {kBusy, kPair, kFrame, kHalfBubble}) {
+    for (const char* scene : {kBusy, kPair, kFrame, kHalfBubble, kBurst}) {
         auto whole = solver_of(scene);
         whole->start({});
         advance(*whole, kSteps);
@@ -148,7 +166,10 @@ TEST(MelpSolver, RefusesFilmsAndOptionsThatItDoesNotKnow) {
     EXPECT_THROW(solver_of("[[film]]\nshape = \"hemisphere\"\n[melp]\nstart.mode_amplitude = 0.1\n"), InputError);
     EXPECT_THROW(solver_of(std::string(kFrame) + "[[wire]]\nshape = \"ring\"\nblow = 1.0\n"), InputError);
     EXPECT_THROW(solver_of("[[film]]\nshape = \"kelvin\"\n"), InputError);
-    EXPECT_THROW(solver_of(ball + "[[event]]\ntime = 1.0\nregion = 1\n"), InputError);
+    EXPECT_THROW(solver_of(ball + "[[event]]\nkind = \"inflate\"\nfactor = 2.0\n"), InputError);
+    EXPECT_THROW(solver_of(ball + "[[event]]\nregion = 0\n"), InputError);
+    EXPECT_THROW(solver_of(std::string(kBurst) + "fine_ratio = 0\n"), InputError);
+    EXPECT_THROW(solver_of(ball + "[[solid]]\nradius = 0.005\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[[tension]]\nb = 1\nfactor = 2.0\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[melp]\nsurfactant_concentration = 1.0\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[melp]\nfine_ratio = -1\n"), InputError);
@@ -206,6 +227,27 @@ damping = 1000.0
     }
     EXPECT_EQ(scalar(*solver, "strays"), 0.0);
     EXPECT_LT(scalar(*solver, "density_spread"), 0.3);
+}
+
+/// A bubble that bursts ends as drops: all of its liquid is there, no number is lost, the frame shows a hole on the way.
+TEST(MelpSolver, BurstsABubbleToTheEnd) {
+    auto solver = solver_of(kBurst);
+    solver->start({});
+    EXPECT_EQ(open_edges(solver->frame().surface.triangles), 0U);
+    const std::size_t particles = solver->fine().size();
+    while (solver->time() < 2e-3) solver->advance(2e-3);
+    EXPECT_GT(open_edges(solver->frame().surface.triangles), 10U);
+    const auto events = solver->take_events();
+    ASSERT_EQ(events.size(), 1U);
+    EXPECT_EQ(events[0].kind, "puncture");
+    EXPECT_NEAR(events[0].position[0], 0.02, 0.003);
+    for (int k = 0; k < 3000 && solver->time() < 0.02; ++k) solver->advance(0.02);
+    EXPECT_EQ(solver->time(), 0.02);
+    EXPECT_LT(solver->coarse().size(), 100U);
+    EXPECT_EQ(solver->fine().size(), particles);
+    EXPECT_NEAR(scalar(*solver, "liquid_error"), 0.0, 1e-12);
+    for (const Vec3& x : solver->fine().position) EXPECT_TRUE(std::isfinite(squared_norm(x)));
+    for (const sim::Scalar& s : solver->scalars()) EXPECT_TRUE(std::isfinite(s.value)) << s.name;
 }
 
 TEST(MelpSolver, ReportsTheSameNamesEveryTime) {

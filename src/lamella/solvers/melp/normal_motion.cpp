@@ -202,6 +202,9 @@ std::vector<FreeCluster> free_clusters(const NormalProblem& p) {
         const RimPiece* rim = nullptr;
         for (const std::size_t i : group)
             if (p.gas[region_of(p.coarse, i)].held) rim = rim_of(p, region_of(p.coarse, i));
+        const bool torn = std::any_of(group.begin(), group.end(),
+                                      [&](std::size_t i) { return p.gas[region_of(p.coarse, i)].burst; });
+        if (torn) continue;
         if (rim == nullptr)
             free.emplace_back(p, std::move(group), all_directions());
         else if (rim->kind == RimKind::kPlate)
@@ -219,7 +222,7 @@ std::vector<double> gas_areas(const NormalProblem& p) {
     std::vector<std::vector<std::size_t>> members(p.gas.size());
     for (std::size_t i = 0; i < area.size(); ++i) members[region_of(p.coarse, i)].push_back(i);
     for (std::size_t r = 0; r < members.size(); ++r) {
-        if (!p.gas[r].closed || members[r].empty()) continue;
+        if (!p.gas[r].closed || p.gas[r].burst || members[r].empty()) continue;
         const RimPiece* rim = rim_of(p, r);
         auto directions = rim == nullptr ? all_directions() : directions_on(rim->b, OnPlate::kGas);
         FreeCluster(p, std::move(members[r]), std::move(directions)).remove_resultant(area, nothing, p.geometry.area);

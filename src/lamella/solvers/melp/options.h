@@ -73,6 +73,7 @@ struct Options {
     bool redistribution = true;
     double volume_rate = 20.0;
     double thickness_rate = 0.2;
+    int slow_motion = 15;
     double solver_tolerance = 1e-6;
     StartOptions start;
 
@@ -128,6 +129,8 @@ struct Options {
                 "[method sheet 16.2]"});
         option("thickness_rate", thickness_rate, sim::at_least(0.0),
                {"at which the thickness of fine particles follows that of the coarse ones", "1/time", "[Deng22]"});
+        option("slow_motion", slow_motion, sim::between(1, 1000),
+               {"so many times as many frames while a film bursts", "-", "[Deng22]"});
         option("solver_tolerance", solver_tolerance, sim::strictly_between(0.0, 0.1),
                {"residual of the linear systems, relative"});
         option.group("start", start, "how films differ from even, resting ones at the start");

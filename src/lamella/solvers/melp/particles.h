@@ -67,6 +67,7 @@ struct Gas {
     double calibration = 1.0;  ///< true volume at the start / the particles' own volume then
     bool closed = true;        ///< false: a film on a wire or one that has burst, the same air on both sides
     bool held = false;         ///< by rims: it does not fly
+    bool burst = false;        ///< its film has a hole
     double film_radius = 0.0;  ///< of the disk that has the area of a film without gas [m]
 
     /// Above that of the outside air [Pa].

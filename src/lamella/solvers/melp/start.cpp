@@ -22,12 +22,16 @@ using mesh::RegionId;
 using mesh::RegionKind;
 using mesh::VertexId;
 
+std::int64_t bubble_count(const film::Problem& films) {
+    const auto& regions = films.mesh.regions;
+    return std::count_if(regions.begin(), regions.end(), [](const auto& r) { return r.kind == RegionKind::kClosed; });
+}
+
 /// Where bubbles meet, films fold within a few spacings. Coarser ones, ones with a flow in their films, and three at a
 /// time were seen to tear there.
 void refuse_coarse_contacts(const film::Problem& films, const Options& options) {
     const auto& regions = films.mesh.regions;
-    const auto bubbles =
-        std::count_if(regions.begin(), regions.end(), [](const auto& r) { return r.kind == RegionKind::kClosed; });
+    const auto bubbles = bubble_count(films);
     if (bubbles < 2) return;
     if (bubbles > 2)
         throw InputError(fmt::format(
@@ -161,8 +165,15 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
     if (!films.tensions.empty()) throw InputError("melp: [[tension]] is not built yet; use solver equilibrium");
     if (!films.solids.empty()) throw InputError("melp: [[solid]] is not built yet; use solver vortex_particle");
     if (!films.vortices.empty()) throw InputError("melp: [[vortex]] is not built yet; use solver vortex_particle");
-    if (!films.events.empty())
-        throw InputError("melp: [[event]] is not built yet; use solver vortex_sheet or equilibrium");
+    for (const film::Event& event : films.events) {
+        if (event.kind == film::Event::Kind::kInflate)
+            throw InputError("melp: [[event]] with kind = \"inflate\" is not built yet; use solver vortex_sheet");
+        if (event.region == film::kRandomBubble || event.into != film::kLargestNeighbor)
+            throw InputError("melp: [[event]] pop takes a region and no `into`: the bubble bursts into the air");
+        if (options.fine_ratio == 0)
+            throw InputError("melp.fine_ratio = 0: films burst only with fine particles, whose liquid the edge gathers");
+        if (bubble_count(films) > 1) throw InputError("melp: [[event]] in scenes of several bubbles is not built yet");
+    }
     refuse_coarse_contacts(films, options);
     refuse_wrong_volumes(films);
 }
@@ -291,9 +302,7 @@ std::size_t particles_on(double area, double spacing) {
 Rims start_rims(const film::Problem& films, const Options& options) {
     Rims rims;
     rims.set_wires(films.wires);
-    const auto& regions = films.mesh.regions;
-    auto region = static_cast<std::int32_t>(
-        std::count_if(regions.begin(), regions.end(), [](const auto& r) { return r.kind == RegionKind::kClosed; }));
+    auto region = static_cast<std::int32_t>(bubble_count(films));
     std::int32_t before = 0;
     for (const OpenFilm& film : open_films(films)) {
         for (std::size_t k = 0; k < film.rims.size(); ++k) {
