@@ -50,7 +50,9 @@ Films films_of(const Geometry& geometry,
     std::vector<double> liquid(even.size(), 0.0);
     for (std::size_t e = 0; e < count; ++e)
         liquid[static_cast<std::size_t>(coarse.region[e])] += gathered.liquid_volume[e];
-    const std::vector<Vec3> drift = region_drifts(geometry, coarse, even.size());
+    std::vector<Vec3> drift = region_drifts(geometry, coarse, even.size());
+    for (std::size_t r = 0; r < even.size(); ++r)
+        if (even[r].held) drift[r] = {};
     Films films;
     films.liquid_volume.resize(count);
     films.thickness.resize(count);

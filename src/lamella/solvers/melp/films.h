@@ -12,6 +12,7 @@ namespace lamella::melp {
 struct EvenFilm {
     double liquid_volume = 0.0;  ///< of the whole region [m^3]; 0: the region has fine particles
     double surfactant = 0.0;     ///< [mol]
+    bool held = false;           ///< by rims: it does not fly
 };
 
 /// The film at coarse particles as the fine ones make it; one entry per coarse particle.

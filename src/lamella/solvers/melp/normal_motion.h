@@ -14,6 +14,7 @@ struct NormalProblem {
     const CoarseParticles& coarse;
     const Geometry& geometry;
     std::span<const Gas> gas;                   ///< per region
+    std::span<const RimPiece> rims;             ///< that hold films, now
     double outside_pressure;                    ///< [Pa]
     std::span<const double> mass;               ///< [kg]
     std::span<const double> interface_tension;  ///< sigma of one interface [N/m]

@@ -55,8 +55,10 @@ sim::Surface MelpSolver::surface() const {
     sim::Field pressure{"pressure", "Pa", 1, false, std::vector<double>(regions, 0.0)};
     for (const Gas& gas : gas_) {
         const auto r = static_cast<std::size_t>(gas.region);
+        if (!gas.closed) continue;
         closed.values[r] = 1.0;
         target.values[r] = input_.films->mesh.regions[static_cast<mesh::RegionId>(r)].target_volume;
+        if (gas.held) target.values[r] = gas.amount / options_.outside_pressure;  // half a bubble: the scene names none
         pressure.values[r] = gas.gauge_pressure(options_.outside_pressure);
     }
     surface.region_fields = {std::move(closed), std::move(target), std::move(pressure)};
@@ -119,11 +121,11 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
                               std::accumulate(even_.begin(), even_.end(), 0.0, [](double total, const EvenFilm& film) {
                                   return total + film.surfactant;
                               });
-    double gas = 0.0, work = 0.0, volume_error = 0.0;
-    const std::vector<double> volume = particle_volumes(coarse_, geometry_, gas_);
+    double gas = 0.0, volume_error = 0.0;
+    const std::vector<double> volume = particle_volumes(coarse_, geometry_, rims_now_, gas_);
     for (std::size_t r = 0; r < gas_.size(); ++r) {
+        if (!gas_[r].closed) continue;
         gas += volume[r];
-        work -= gas_[r].amount * std::log(gas_[r].volume);
         volume_error = std::max(volume_error, std::abs(volume[r] / gas_[r].volume - 1.0));
     }
     const Spread film = spread_of(films_.thickness, geometry_.area);
@@ -170,7 +172,7 @@ std::vector<sim::Scalar> MelpSolver::characteristic_numbers() const {
     return {
         {"film_tension", "N/m", material.film_tension(), "twice the surface tension"},
         {"film_mass", "kg/m^2", mass, "per area"},
-        {"bubbles", "-", static_cast<double>(start.gas.size()), "closed regions"},
+        {"films", "-", static_cast<double>(start.gas.size()), "bubbles and films on wires"},
         {"coarse_particles", "-", static_cast<double>(start.coarse.size()), "at the start"},
         {"fine_particles", "-", static_cast<double>(start.fine.size()), "at the start"},
         {"spacing", "m", start.spacing, "of coarse particles"},
