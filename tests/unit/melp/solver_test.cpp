@@ -112,7 +112,7 @@ TEST(MelpSolver, RefusesFilmsAndOptionsThatItDoesNotKnow) {
     EXPECT_THROW(solver_of("[[film]]\nshape = \"kelvin\"\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[[event]]\ntime = 1.0\nregion = 1\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[[tension]]\nb = 1\nfactor = 2.0\n"), InputError);
-    EXPECT_THROW(solver_of(ball + "[melp]\nsurfactant_concentration = 1.0\n"), InputError);
+    EXPECT_THROW(solver_of(ball + "[material]\nsurfactant = 1e-5\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[melp]\nfine_ratio = -1\n"), InputError);
     EXPECT_THROW(solver_of(kPair, {"melp.fine_ratio=16"}), InputError);
     EXPECT_THROW(solver_of(kPair, {"resolution.edge_length=0.002"}), InputError);

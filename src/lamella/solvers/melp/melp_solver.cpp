@@ -21,15 +21,15 @@ namespace lamella::melp {
 
 MelpSolver::MelpSolver(const Options& options, const sim::SolverInput& input) : options_(options), input_(input) {
     if (!input_.films) throw InputError("the scene has no films; add a [[bubble]]");
-    law_ = {.reference_tension = input_.films->material.surface_tension,
-            .reference_concentration = options_.surfactant_concentration,
-            .temperature = options_.temperature};
-    if (law_.tension(2.0 * options_.surfactant_concentration) <= 0.0)
+    const film::Material& material = input_.films->material;
+    law_ = {.reference_tension = material.surface_tension,
+            .reference_concentration = film::start_surfactant(material),
+            .temperature = material.temperature};
+    if (law_.tension(2.0 * law_.reference_concentration) <= 0.0)
         throw InputError(fmt::format(
-            "melp.surfactant_concentration = {:.3g} mol/m^2 takes R T * that = {:.3g} N/m from the tension, "
-            "as much as material.surface_tension = {:.3g} N/m has",
-            options_.surfactant_concentration, law_.thermal_energy() * options_.surfactant_concentration,
-            law_.reference_tension));
+            "melp: the elasticity of an interface, {:.3g} N/m from material.surfactant = {:.3g} mol/m^2, is as high as "
+            "material.surface_tension = {:.3g} N/m: where a film has twice the surfactant it would have no tension",
+            film::elasticity(material), law_.reference_concentration, law_.reference_tension));
     refuse_unknown_films(*input_.films, options_);
 }
 
@@ -116,7 +116,7 @@ double MelpSolver::strongest_pull() const {
     const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, films_.concentration);
     double strongest = 0.0;
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
-        const double mass = options_.liquid_density * films_.thickness[i];
+        const double mass = liquid_density() * films_.thickness[i];
         const Vec3 pull = input_.films->material.gravity - (2.0 * law_.thermal_energy() / mass) * slope[i];
         strongest = std::max(strongest, norm(pull));
     }
@@ -126,7 +126,7 @@ double MelpSolver::strongest_pull() const {
 /// Gravity, air and surfactant act along the film; what fine particles will take is in coarse_.velocity then.
 SurfactantStep MelpSolver::push_along_film(double dt) {
     const std::size_t count = coarse_.size();
-    const double density = options_.liquid_density;
+    const double density = liquid_density();
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3& n = geometry_.normal[i];
         const double drag = dt * options_.air_drag / (density * films_.thickness[i]);
@@ -135,7 +135,7 @@ SurfactantStep MelpSolver::push_along_film(double dt) {
         coarse_.velocity[i] = u / (1.0 + drag) + dot(coarse_.velocity[i], n) * n;
     }
     marangoni_.assign(count, {});
-    if (options_.surfactant_concentration == 0.0) return {};
+    if (fine_.size() == 0) return {};  // constant tension
     SurfactantStep step = solve_surfactant(geometry_, coarse_.position, films_, coarse_.velocity, law_, density, dt,
                                            options_.solver_tolerance);
     const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, step.concentration);
@@ -151,7 +151,7 @@ std::vector<double> MelpSolver::masses() const {
     for (std::size_t i = 0; i < mass.size(); ++i) {
         const double radius =
             std::cbrt(0.75 * gas_[static_cast<std::size_t>(coarse_.region[i])].volume / std::numbers::pi);
-        mass[i] = options_.liquid_density * films_.liquid_volume[i] +
+        mass[i] = liquid_density() * films_.liquid_volume[i] +
                   options_.air_mass * input_.films->material.air_density * radius * geometry_.area[i];
     }
     return mass;
@@ -165,7 +165,7 @@ NormalStep MelpSolver::push_along_normals(double dt) {
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3& n = geometry_.normal[i];
         before[i] = dot(coarse_.velocity[i], n);
-        external[i] = (options_.liquid_density * films_.liquid_volume[i]) * input_.films->material.gravity;
+        external[i] = (liquid_density() * films_.liquid_volume[i]) * input_.films->material.gravity;
         if (dot(n, options_.wind) < 0.0)  // the side that the wind blows on
             external[i] += (options_.air_drag * geometry_.area[i]) * (options_.wind - coarse_.velocity[i]);
     }
@@ -321,7 +321,7 @@ double MelpSolver::slowest_period(const std::vector<Gas>& bubbles) const {
     for (const Gas& gas : bubbles) {
         const double radius = std::cbrt(0.75 * gas.volume / std::numbers::pi);
         const double mass =
-            options_.liquid_density * material.thickness + options_.air_mass * material.air_density * radius;
+            liquid_density() * material.thickness + options_.air_mass * material.air_density * radius;
         shortest = std::min(shortest, std::numbers::pi * radius * std::sqrt(mass / material.film_tension()));
     }
     return shortest;

@@ -44,6 +44,7 @@ public:
     double spacing() const { return spacing_; }
 
 private:
+    double liquid_density() const { return input_.films->material.liquid_density; }
     double support_radius() const { return options_.support_radius * spacing_; }
     double slowest_period(const std::vector<Gas>& bubbles) const;
     // The stages of a step, in order.

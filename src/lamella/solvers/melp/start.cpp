@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.h"
 #include "lamella/film/noise.h"
+#include "lamella/film/surfactant.h"
 #include "lamella/mesh/volume.h"
 
 #include <fmt/format.h>
@@ -196,6 +197,7 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
     Start start;
     const IdVector<RegionId, double> volume = mesh::region_volumes(films.mesh);
     const double h = films.edge_length;
+    const double surfactant = film::start_surfactant(films.material);
     double total_area = 0.0, largest_radius = 0.0;
     for (const RegionId r : films.mesh.regions.ids())
         if (films.mesh.regions[r].kind == RegionKind::kClosed)
@@ -221,7 +223,7 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
         for (const Vec3& x : fine.position) {
             const double thick = std::max(1.0 + noise((x - center)), 0.05);
             start.fine.liquid_volume.push_back(thick * films.material.thickness * share);
-            start.fine.surfactant.push_back(thick * options.surfactant_concentration * share);
+            start.fine.surfactant.push_back(thick * surfactant * share);
             start.fine.thickness.push_back(thick * films.material.thickness);
         }
         deform(coarse.position, center, options.start);
@@ -243,7 +245,7 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
                              .amount = pressure * films.mesh.regions[r].target_volume,
                              .volume = v});
         start.even.push_back(fine.position.empty()
-                                 ? EvenFilm{films.material.thickness * area, options.surfactant_concentration * area}
+                                 ? EvenFilm{films.material.thickness * area, surfactant * area}
                                  : EvenFilm{});
         total_area += area;
     }
