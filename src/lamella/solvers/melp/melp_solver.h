@@ -56,6 +56,7 @@ private:
     void filter_short_waves();
     void give_to_fine(double dt);
     void move_coarse(double dt, const NormalStep& step);
+    void pull_back_spikes(double dt);
     void move_fine(double dt);
     void update_shape();
     void update_liquid();

@@ -12,9 +12,14 @@
 namespace lamella::melp {
 
 Cohesion cohesion(double gamma, double beta) {
-    const double g = std::min(gamma, 1.0);
-    const double f = g + beta * g * (1.0 - g), slope = 1.0 + beta * (1.0 - 2.0 * g);
-    return {2.0 - f - g * slope, slope};
+    // Beyond 1 the attraction falls as fast as this: with gamma^-2 borders of three bubbles crumpled, without a fall
+    // single particles were drawn into the point where three bubbles and the air meet.
+    constexpr double kPower = 6.0;
+    const double shared = std::min(gamma, 1.0), excess = std::max(gamma, 1.0);
+    const double slope = gamma < 1.0 ? 1.0 + beta * (1.0 - 2.0 * gamma) : (1.0 - beta) * std::pow(gamma, -kPower);
+    const double f = shared + beta * shared * (1.0 - shared) +
+                     (1.0 - beta) * (1.0 - std::pow(excess, 1.0 - kPower)) / (kPower - 1.0);
+    return {2.0 - f - gamma * slope, slope};
 }
 
 namespace {

@@ -1,9 +1,11 @@
 #include "lamella/solvers/melp/start.h"
 
 #include "lamella/core/error.h"
+#include "lamella/core/parallel.h"
 #include "lamella/film/noise.h"
 #include "lamella/film/surfactant.h"
 #include "lamella/mesh/volume.h"
+#include "lamella/solvers/melp/surface.h"
 
 #include <fmt/format.h>
 
@@ -21,28 +23,19 @@ using mesh::RegionId;
 using mesh::RegionKind;
 using mesh::VertexId;
 
-/// Where bubbles meet, films fold within a few spacings. Coarser ones, ones with a flow in their films, and three at a
-/// time were seen to tear there.
-void refuse_coarse_contacts(const film::Problem& films, const Options& options) {
+/// Where bubbles meet, films fold within a few spacings: folds have to fit onto the bubble.
+void refuse_coarse_contacts(const film::Problem& films) {
     const auto& regions = films.mesh.regions;
     const auto bubbles =
         std::count_if(regions.begin(), regions.end(), [](const auto& r) { return r.kind == RegionKind::kClosed; });
     if (bubbles < 2) return;
-    if (bubbles > 2)
-        throw InputError(fmt::format(
-            "melp: {} bubbles: more than two are not built yet; use solver vortex_sheet or equilibrium", bubbles));
-    if (options.fine_ratio > 0)
-        throw InputError(
-            fmt::format("melp.fine_ratio = {}: several bubbles with a flow in their films are not built yet; "
-                        "fine_ratio = 0 moves them without one",
-                        options.fine_ratio));
-    constexpr double kFinest = 10.0;
+    constexpr double kFinest = 6.0;
     for (const RegionId r : regions.ids()) {
         const double radius = std::cbrt(0.75 * regions[r].target_volume / std::numbers::pi);
         if (regions[r].kind == RegionKind::kClosed && films.edge_length > 1.001 * radius / kFinest)
             throw InputError(
                 fmt::format("resolution.edge_length = {:.4g} m is too coarse for bubble {} among others: at most a "
-                            "tenth of its radius of {:.4g} m will do",
+                            "sixth of its radius of {:.4g} m will do",
                             films.edge_length, index(r), radius));
     }
 }
@@ -161,6 +154,20 @@ void deform(std::vector<Vec3>& position, const Vec3& center, const StartOptions&
     }
 }
 
+/// What lies at particle i between its film and those of other bubbles that it has pushed through [m^3]: the gases
+/// press films of a partition a few tenths of a spacing into each other until cohesion holds them. Negative where they
+/// gape.
+double overlap_volume(const CoarseParticles& coarse, const Geometry& geometry, std::size_t i) {
+    const Neighbors& other = geometry.neighbors.other;
+    double depth = 0.0;
+    for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
+        const std::size_t j = other.index[k];
+        depth += 0.5 * geometry.area[j] * other.weight[k] *
+                 dot(coarse.position[i] - coarse.position[j], geometry.normal[i] - geometry.normal[j]);
+    }
+    return geometry.area[i] * depth;
+}
+
 }  // namespace
 
 void refuse_unknown_films(const film::Problem& films, const Options& options) {
@@ -176,7 +183,7 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
     if (!films.tensions.empty()) throw InputError("melp: [[tension]] is not built yet; use solver equilibrium");
     if (!films.events.empty())
         throw InputError("melp: [[event]] is not built yet; use solver vortex_sheet or equilibrium");
-    refuse_coarse_contacts(films, options);
+    refuse_coarse_contacts(films);
     refuse_wrong_volumes(films);
 }
 
@@ -244,9 +251,8 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
         start.gas.push_back({.region = static_cast<std::int32_t>(index(r)),
                              .amount = pressure * films.mesh.regions[r].target_volume,
                              .volume = v});
-        start.even.push_back(fine.position.empty()
-                                 ? EvenFilm{films.material.thickness * area, surfactant * area}
-                                 : EvenFilm{});
+        start.even.push_back(fine.position.empty() ? EvenFilm{films.material.thickness * area, surfactant * area}
+                                                   : EvenFilm{});
         total_area += area;
     }
     if (start.gas.empty()) throw InputError("melp: the scene has no bubble; add a [[bubble]]");
@@ -265,10 +271,12 @@ std::vector<double> particle_volumes(const CoarseParticles& coarse,
         area[r] += geometry.area[i];
     }
     for (std::size_t r = 0; r < gas.size(); ++r) center[r] = center[r] / area[r];
-    for (std::size_t i = 0; i < coarse.size(); ++i) {
-        const auto r = static_cast<std::size_t>(coarse.region[i]);
-        volume[r] += geometry.area[i] * dot(coarse.position[i] - center[r], geometry.normal[i]) / 3.0;
-    }
+    std::vector<double> share(coarse.size());
+    parallel_for(coarse.size(), [&](std::size_t i) {
+        share[i] = star_volume(coarse, geometry, i, center[static_cast<std::size_t>(coarse.region[i])]) -
+                   0.5 * overlap_volume(coarse, geometry, i);
+    });
+    for (std::size_t i = 0; i < coarse.size(); ++i) volume[static_cast<std::size_t>(coarse.region[i])] += share[i];
     for (std::size_t r = 0; r < gas.size(); ++r) volume[r] *= gas[r].calibration;
     return volume;
 }
