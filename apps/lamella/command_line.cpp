@@ -16,12 +16,15 @@ std::vector<std::string> command_names(const CLI::App& app) {
     return names;
 }
 
-/// The command that the user called, or nullptr.
-const CLI::App* called_command(const CLI::App& app, const std::vector<std::string>& arguments) {
-    if (arguments.empty()) return nullptr;
-    const std::vector<std::string> names = command_names(app);
-    const bool known = std::find(names.begin(), names.end(), arguments.front()) != names.end();
-    return known ? app.get_subcommand(arguments.front()) : nullptr;
+/// The command that the user called, its words in front of `arguments` taken off.
+const CLI::App* called_command(const CLI::App* app, std::vector<std::string>& arguments) {
+    while (!arguments.empty()) {
+        const std::vector<std::string> names = command_names(*app);
+        if (std::find(names.begin(), names.end(), arguments.front()) == names.end()) break;
+        app = app->get_subcommand(arguments.front());
+        arguments.erase(arguments.begin());
+    }
+    return app;
 }
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
@@ -31,8 +34,8 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
 
 /// The first argument that looks like an option and that the command does not have, or "".
 std::string unknown_option(const CLI::App& command, const std::vector<std::string>& arguments) {
-    for (std::size_t i = 1; i < arguments.size(); ++i) {
-        const std::string name = arguments[i].substr(0, arguments[i].find('='));
+    for (const std::string& argument : arguments) {
+        const std::string name = argument.substr(0, argument.find('='));
         if (name.size() > 2 && name.starts_with("--") && command.get_option_no_throw(name) == nullptr) return name;
     }
     return "";
@@ -52,17 +55,20 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
     return command;
 }
 
-std::string misuse_text(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
-    if (arguments.empty()) return "a command is missing; `lamella --help` lists them";
-    const CLI::App* command = called_command(app, arguments);
-    if (command == nullptr && !arguments.front().starts_with("-"))
-        return fmt::format("there is no command {}{}; `lamella --help` lists them", arguments.front(),
-                           suggestion(arguments.front(), command_names(app)));
-    const std::string where = command == nullptr ? "lamella" : "lamella " + command->get_name();
-    const std::string option = unknown_option(command == nullptr ? app : *command, arguments);
+std::string misuse_text(const CLI::App& app, const CLI::ParseError& error, std::vector<std::string> arguments) {
+    const CLI::App* command = called_command(&app, arguments);
+    std::string where = command->get_name();
+    for (const CLI::App* parent = command->get_parent(); parent != nullptr; parent = parent->get_parent())
+        where = parent->get_name() + " " + where;
+    const bool has_commands = !command_names(*command).empty();
+    if (arguments.empty() && has_commands) return fmt::format("a command is missing; `{} --help` lists them", where);
+    if (has_commands && !arguments.front().starts_with("-"))
+        return fmt::format("there is no command {}{}; `{} --help` lists them", arguments.front(),
+                           suggestion(arguments.front(), command_names(*command)), where);
+    const std::string option = unknown_option(*command, arguments);
     if (!option.empty()) {
         std::vector<std::string> known;
-        for (const CLI::Option* candidate : (command == nullptr ? app : *command).get_options())
+        for (const CLI::Option* candidate : command->get_options())
             for (const std::string& long_name : candidate->get_lnames()) known.push_back("--" + long_name);
         return fmt::format("{} has no option {}{}; `{} --help` lists them", where, option, suggestion(option, known),
                            where);

@@ -14,6 +14,7 @@ void add_run_commands(CLI::App& app, int& exit_code);  ///< run, resume
 void add_check_command(CLI::App& app);
 void add_scenes_command(CLI::App& app);
 void add_explain_command(CLI::App& app);
+void add_sweep_command(CLI::App& app, int& exit_code);  ///< sweep plan, run, status, todo, collect
 void add_measure_command(CLI::App& app);
 void add_plot_command(CLI::App& app);
 void add_render_command(CLI::App& app, int& exit_code);

@@ -31,6 +31,7 @@ int run_program(int argc, char** argv) {
     app::add_check_command(program);
     app::add_scenes_command(program);
     app::add_explain_command(program);
+    app::add_sweep_command(program, exit_code);
     app::add_measure_command(program);
     app::add_plot_command(program);
     app::add_render_command(program, exit_code);
@@ -42,8 +43,13 @@ int run_program(int argc, char** argv) {
     try {
         program.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
-        const std::vector<CLI::App*> called = program.get_subcommands();
-        app::print_result(called.empty() ? program.help() : called.front()->help("lamella"));
+        const CLI::App* called = &program;
+        std::string name = "lamella";
+        while (!called->get_subcommands().empty()) {
+            if (called != &program) name += " " + called->get_name();
+            called = called->get_subcommands().front();
+        }
+        app::print_result(called == &program ? program.help() : called->help(name));
     } catch (const CLI::ParseError& error) {
         app::print_error(app::misuse_text(program, error, {argv + 1, argv + argc}));
         return app::kWrongInput;

@@ -22,6 +22,13 @@ std::size_t terminal_width() {
 
 }  // namespace
 
+ProgressStyle progress_style(const std::string& name) {
+    if (name == "bar") return ProgressStyle::kBar;
+    if (name == "plain") return ProgressStyle::kPlain;
+    if (name == "none") return ProgressStyle::kNone;
+    return ::isatty(STDERR_FILENO) != 0 ? ProgressStyle::kBar : ProgressStyle::kPlain;
+}
+
 ProgressDisplay::ProgressDisplay(ProgressStyle style) : style_(style) {}
 
 ProgressDisplay::~ProgressDisplay() { clear(); }
@@ -58,7 +65,7 @@ std::string ProgressDisplay::status(const run::RunProgress& progress) const {
         text = fmt::format("time {:.5g}{}  step {}  frames {}", progress.time,
                            progress.time_unit == "-" ? "" : " " + progress.time_unit, progress.step, progress.frames);
     } else {
-        text = progress.stage;
+        text = progress.text.empty() ? progress.stage : fmt::format("{}: {}", progress.stage, progress.text);
     }
     if (progress.fraction) text = fmt::format("{:3.0f} %  {}", 100.0 * *progress.fraction, text);
     if (const auto left = estimate_.seconds_left()) text += fmt::format("  {} left", duration_text(*left));

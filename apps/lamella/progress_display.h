@@ -13,6 +13,9 @@ enum class ProgressStyle {
     kNone,
 };
 
+/// The style that the user names: bar, plain, none; "" is a bar on a terminal, else plain.
+ProgressStyle progress_style(const std::string& name);
+
 /// Shows on standard error how far a run is and how long it will take.
 class ProgressDisplay {
 public:

@@ -7,7 +7,6 @@
 #include "lamella/scene/shipped.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "command_line.h"
 #include "commands.h"
@@ -51,13 +50,6 @@ void add_common_options(CLI::App& command, RunOptions& options) {
 
 void check_device(const std::string& device) {
     if (device != "cpu") throw InputError("this build has no CUDA support; use --device cpu");
-}
-
-ProgressStyle progress_style(const std::string& name) {
-    if (name == "bar") return ProgressStyle::kBar;
-    if (name == "plain") return ProgressStyle::kPlain;
-    if (name == "none") return ProgressStyle::kNone;
-    return ::isatty(STDERR_FILENO) != 0 ? ProgressStyle::kBar : ProgressStyle::kPlain;
 }
 
 /// "runs/coarsening-2d" for scenes/bubble/coarsening-2d.toml.

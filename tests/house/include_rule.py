@@ -32,6 +32,7 @@ FOLDERS = {
 FOLDERS |= {f"solvers/{name}": BELOW_SOLVERS for name in SOLVERS}
 FOLDERS["scene"] = list(FOLDERS)
 FOLDERS["run"] = list(FOLDERS)
+FOLDERS["sweep"] = list(FOLDERS)
 
 # Library (how its headers begin) -> the folders whose sources may include it. Public headers include none.
 LIBRARIES = {

@@ -27,7 +27,9 @@ void append_field(std::string& line, std::string_view field) {
     line += '"';
 }
 
-std::string text_line(const std::vector<std::string>& fields) {
+}  // namespace
+
+std::string csv_line(const std::vector<std::string>& fields) {
     std::string line;
     for (std::size_t i = 0; i < fields.size(); ++i) {
         if (i > 0) line += ',';
@@ -36,8 +38,6 @@ std::string text_line(const std::vector<std::string>& fields) {
     line += '\n';
     return line;
 }
-
-}  // namespace
 
 struct CsvWriter::Impl {
     std::filesystem::path path;
@@ -101,7 +101,7 @@ void CsvWriter::append(const std::vector<double>& row) {
     impl_->append_line(line);
 }
 
-void CsvWriter::append_text(const std::vector<std::string>& row) { impl_->append_line(text_line(row)); }
+void CsvWriter::append_text(const std::vector<std::string>& row) { impl_->append_line(csv_line(row)); }
 
 std::uint64_t CsvWriter::sync() {
     if (::fsync(impl_->file.get()) != 0) detail::throw_io_error("write", impl_->path, errno);
@@ -122,6 +122,23 @@ class CsvScanner {
 public:
     CsvScanner(std::string_view text, const std::string& name) : text_(text), name_(name) {}
 
+    std::vector<std::string> header() {
+        auto fields = next_record();
+        if (!fields) throw InputError({name_}, "is empty; a header line was expected");
+        return std::move(*fields);
+    }
+
+    /// The next record, which must have as many fields as the header; nothing at the end of the text.
+    std::optional<std::vector<std::string>> next_row(std::size_t columns) {
+        auto fields = next_record();
+        if (fields && fields->size() != columns)
+            throw error(fmt::format("{} values, but the header has {} columns", fields->size(), columns));
+        return fields;
+    }
+
+    InputError error(const std::string& message) const { return InputError({name_, record_line_, 0}, message); }
+
+private:
     /// The fields of the next record that is not blank; nothing at the end of the text.
     std::optional<std::vector<std::string>> next_record() {
         while (position_ < text_.size()) {
@@ -132,9 +149,6 @@ public:
         return std::nullopt;
     }
 
-    InputError error(const std::string& message) const { return InputError({name_, record_line_, 0}, message); }
-
-private:
     std::vector<std::string> record() {
         std::vector<std::string> fields(1);
         bool quoted = false;
@@ -190,20 +204,23 @@ CsvTable read_csv(const std::filesystem::path& path) { return parse_csv(read_fil
 CsvTable parse_csv(std::string_view text, const std::string& name) {
     CsvScanner scanner(text, name);
     CsvTable table;
-    auto header = scanner.next_record();
-    if (!header) throw InputError({name}, "is empty; a header line was expected");
-    table.header = std::move(*header);
-    while (const auto fields = scanner.next_record()) {
-        if (fields->size() != table.header.size()) {
-            throw scanner.error(
-                fmt::format("{} values, but the header has {} columns", fields->size(), table.header.size()));
-        }
+    table.header = scanner.header();
+    while (const auto fields = scanner.next_row(table.header.size())) {
         std::vector<double>& row = table.rows.emplace_back();
         row.reserve(fields->size());
         for (std::size_t i = 0; i < fields->size(); ++i) {
             row.push_back(parse_number((*fields)[i], table.header[i], scanner));
         }
     }
+    return table;
+}
+
+CsvTextTable read_csv_text(const std::filesystem::path& path) {
+    const std::string text = read_file(path), name = path.string();
+    CsvScanner scanner(text, name);
+    CsvTextTable table;
+    table.header = scanner.header();
+    while (auto fields = scanner.next_row(table.header.size())) table.rows.push_back(std::move(*fields));
     return table;
 }
 

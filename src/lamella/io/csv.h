@@ -37,6 +37,9 @@ private:
     std::unique_ptr<Impl, ImplDeleter> impl_;
 };
 
+/// One row, with its end of line; fields are quoted where needed.
+std::string csv_line(const std::vector<std::string>& fields);
+
 /// A CSV table of numbers with a header.
 struct CsvTable {
     std::vector<std::string> header;
@@ -49,5 +52,13 @@ struct CsvTable {
 CsvTable read_csv(const std::filesystem::path& path);
 /// The same from text (tests, fuzzing); `name` stands for the file in messages.
 CsvTable parse_csv(std::string_view text, const std::string& name);
+
+/// A CSV table of anything, with a header.
+struct CsvTextTable {
+    std::vector<std::string> header;
+    std::vector<std::vector<std::string>> rows;  ///< each as long as the header
+};
+/// @throws IoError, InputError (file:line)
+CsvTextTable read_csv_text(const std::filesystem::path& path);
 
 }  // namespace lamella::io

@@ -164,4 +164,12 @@ void Provenance::write(const RunRecord& record) {
     io::write_file_atomically(impl_->path, file.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 
+std::string recorded_state(const std::filesystem::path& run_json) {
+    std::error_code absent;
+    if (!std::filesystem::is_regular_file(run_json, absent)) return "";
+    const auto json = ordered_json::parse(io::read_file(run_json), nullptr, false);
+    return json.is_object() && json.contains("state") && json["state"].is_string() ? json["state"].get<std::string>()
+                                                                                   : "";
+}
+
 }  // namespace lamella::run

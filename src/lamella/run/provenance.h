@@ -76,4 +76,7 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
+/// What a run.json says of the run's state ("finished", see RunRecord); "" where there is none that can be understood.
+std::string recorded_state(const std::filesystem::path& run_json);
+
 }  // namespace lamella::run

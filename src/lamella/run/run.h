@@ -15,6 +15,7 @@ namespace lamella::run {
 /// Where a run is, for a display.
 struct RunProgress {
     std::string stage;               ///< "run", or what the solver does while it starts
+    std::string text = {};           ///< more about a stage other than "run"
     std::optional<double> fraction;  ///< of that stage that is done, 0 to 1; nothing when nobody knows
     double time = 0.0;               ///< in time_unit
     std::string time_unit = "s";

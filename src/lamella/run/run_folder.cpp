@@ -24,10 +24,13 @@ constexpr const char* kLockName = "run.lock";
 /// Temporary files of io::write_file_atomically and io::CheckpointWriter; only a killed process leaves any.
 bool is_temporary(const fs::path& path) { return path.filename().string().find(".tmp") != std::string::npos; }
 
-/// Whether the folder has anything in it but a lock and temporary files.
+/// Whether the folder has anything in it but what a run makes first: a lock, a folder for frames, temporary files.
 bool holds_something(const fs::path& folder) {
-    for (const auto& entry : fs::directory_iterator(folder))
-        if (entry.path().filename() != kLockName && !is_temporary(entry.path())) return true;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const bool empty_frames =
+            entry.path().filename() == "frames" && entry.is_directory() && fs::is_empty(entry.path());
+        if (entry.path().filename() != kLockName && !is_temporary(entry.path()) && !empty_frames) return true;
+    }
     return false;
 }
 
@@ -41,9 +44,7 @@ std::int64_t frame_index(const fs::path& file) {
 }
 
 /// "film_1.fe": what a run copies of its scene's films.
-bool is_film_copy(const fs::path& path) {
-    return path.stem().string().starts_with("film_") && io::is_film_file(path);
-}
+bool is_film_copy(const fs::path& path) { return path.stem().string().starts_with("film_") && io::is_film_file(path); }
 
 /// Turns what std::filesystem throws into the error that ends with exit code 4.
 template <class Work>

@@ -1,11 +1,11 @@
 #include "lamella/geometry/triangle_intersection.h"
 
+#include "lamella/geometry/distance.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <random>
-
-#include "lamella/geometry/distance.h"
 
 namespace lamella::geometry {
 namespace {
@@ -17,15 +17,15 @@ TEST(TrianglesMeet, InAPointOnAnEdgeOrInAPlane) {
         Triangle t;
         bool meet;
     };
-    for (const Case& c : {Case{{{{{1, 1, -1}}, {{1, 1, 1}}, {{9, 9, 0}}}}, true},     // pierces
-                          Case{{{{{1, 1, 0}}, {{1, 1, 1}}, {{2, 2, 1}}}}, true},      // touches with a corner
-                          Case{{{{{1, 1, 1e-30}}, {{1, 1, 1}}, {{2, 2, 1}}}}, false}, // misses by a hair
-                          Case{{{{{2, 2, -1}}, {{2, 2, 1}}, {{9, 9, 0}}}}, true},     // through the long edge
+    for (const Case& c : {Case{{{{{1, 1, -1}}, {{1, 1, 1}}, {{9, 9, 0}}}}, true},      // pierces
+                          Case{{{{{1, 1, 0}}, {{1, 1, 1}}, {{2, 2, 1}}}}, true},       // touches with a corner
+                          Case{{{{{1, 1, 1e-30}}, {{1, 1, 1}}, {{2, 2, 1}}}}, false},  // misses by a hair
+                          Case{{{{{2, 2, -1}}, {{2, 2, 1}}, {{9, 9, 0}}}}, true},      // through the long edge
                           Case{{{{{2.5, 2, -1}}, {{2, 2.5, 1}}, {{9, 9, 0}}}}, false},
-                          Case{{{{{1, 1, 0}}, {{2, 1, 0}}, {{1, 2, 0}}}}, true},      // inside, in the plane
+                          Case{{{{{1, 1, 0}}, {{2, 1, 0}}, {{1, 2, 0}}}}, true},        // inside, in the plane
                           Case{{{{{-9, -9, 0}}, {{30, -9, 0}}, {{-9, 30, 0}}}}, true},  // around it, in the plane
-                          Case{{{{{5, 5, 0}}, {{6, 5, 0}}, {{5, 6, 0}}}}, false},     // beside it, in the plane
-                          Case{{{{{4, 0, 0}}, {{5, 0, 0}}, {{5, 1, 0}}}}, true}})     // corner on corner
+                          Case{{{{{5, 5, 0}}, {{6, 5, 0}}, {{5, 6, 0}}}}, false},       // beside it, in the plane
+                          Case{{{{{4, 0, 0}}, {{5, 0, 0}}, {{5, 1, 0}}}}, true}})       // corner on corner
     {
         EXPECT_EQ(triangles_meet(kFlat, c.t), c.meet) << c.t[0][0] << " " << c.t[0][1] << " " << c.t[0][2];
         EXPECT_EQ(triangles_meet(c.t, kFlat), c.meet);
@@ -54,7 +54,8 @@ TEST(TrianglesMeet, WhereverTheirDistanceIsZero) {
         // An edge that pierces the other triangle is near none of its edges and corners.
         bool pierced = false;
         for (std::size_t i = 0; i < 3; ++i)
-            pierced = pierced || segment_meets_triangle(s[i], s[(i + 1) % 3], t) || segment_meets_triangle(t[i], t[(i + 1) % 3], s);
+            pierced = pierced || segment_meets_triangle(s[i], s[(i + 1) % 3], t) ||
+                      segment_meets_triangle(t[i], t[(i + 1) % 3], s);
         const bool expected = least < 1e-12 || pierced;
         met += expected;
         ASSERT_EQ(triangles_meet(s, t), expected);
@@ -88,7 +89,7 @@ TEST(Distance, OfSegmentsIsTheLeastOverTheirPoints) {
         std::array<Vec3, 4> p;
         for (Vec3& q : p)
             for (std::size_t k = 0; k < 3; ++k) q[k] = coordinate(random);
-        if (n % 4 == 0) p[1] = p[0];                      // a point
+        if (n % 4 == 0) p[1] = p[0];                        // a point
         if (n % 4 == 1) p[3] = p[2] + 2.0 * (p[1] - p[0]);  // parallel
         double sampled = 1e300;
         for (int i = 0; i <= 200; ++i)
@@ -109,11 +110,39 @@ TEST(Distance, ToATriangleIsTheLeastOverItsPoints) {
         double sampled = 1e300;
         for (int i = 0; i <= 100; ++i) {
             const double u = i / 100.0;
-            sampled = std::min(sampled, squared_distance_to_segment(p[0], p[1] + u * (p[2] - p[1]), p[1] + u * (p[3] - p[1])));
+            sampled = std::min(sampled,
+                               squared_distance_to_segment(p[0], p[1] + u * (p[2] - p[1]), p[1] + u * (p[3] - p[1])));
         }
         const double found = squared_distance_to_triangle(p[0], p[1], p[2], p[3]);
         ASSERT_LE(found, sampled + 1e-12);
         ASSERT_GE(std::sqrt(found), std::sqrt(sampled) - 0.03);
+    }
+}
+
+/// In a frame that is turned, so that coordinates are rounded.
+Vec3 turned(double x, double y, double z) {
+    const Vec3 a = Vec3{{1, 2, 3}} / std::sqrt(14.0), b = Vec3{{2, -1, 0}} / std::sqrt(5.0);
+    return x * a + y * b + z * cross(a, b);
+}
+
+TEST(Distance, OfSegmentsThatCrossAtASmallAngleIsThatWhereTheyCross) {
+    constexpr double kGap = 1e-10;
+    for (double angle = 0.1; angle > 1e-9; angle *= 0.3) {
+        const double found = squared_distance_of_segments(
+            turned(-0.37, 0, 0), turned(0.63, 0, 0), turned(-0.5, -0.5 * angle, kGap), turned(0.5, 0.5 * angle, kGap));
+        EXPECT_NEAR(std::sqrt(found), kGap, 1e-15) << "angle " << angle;
+    }
+}
+
+TEST(Distance, ToANeedleIsThatToThePointOverWhichOneIs) {
+    constexpr double kGap = 1e-10;
+    for (double height = 0.1; height > 1e-9; height *= 0.3) {
+        const std::array<Vec3, 3> x{turned(0, 0, 0), turned(1, 0, 0), turned(0.6, height, 0)};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double found =
+                squared_distance_to_triangle(turned(0.43, 0.5 * height, kGap), x[k], x[(k + 1) % 3], x[(k + 2) % 3]);
+            EXPECT_NEAR(std::sqrt(found), kGap, 2e-15) << "height " << height << ", first corner " << k;
+        }
     }
 }
 

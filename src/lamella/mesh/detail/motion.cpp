@@ -12,10 +12,10 @@ namespace lamella::mesh::detail {
 namespace {
 
 constexpr double kTogether = 0.9;
-constexpr double kFloor = 1e-4;  // of the longest step
+constexpr double kFloor = 1e-7;  // of the longest step
 
-/// Whether the boxes of two sets of points come closer than `reach` along every axis. It spares most exact distances: of
-/// the primitives of two faces whose boxes meet nine in ten are farther apart than they move.
+/// Whether the boxes of two sets of points come closer than `reach` along every axis. It spares most exact distances:
+/// of the primitives of two faces whose boxes meet nine in ten are farther apart than they move.
 template <std::size_t N, std::size_t M>
 bool boxes_near(const std::array<Vec3, N>& a, const std::array<Vec3, M>& b, double reach) {
     bool near = true;
@@ -37,11 +37,15 @@ bool boxes_near(const std::array<Vec3, N>& a, const std::array<Vec3, M>& b, doub
 using Pair = MotionLimit::Pair;
 using Lengths = IdVector<VertexId, double>;
 
+/// Of the first `first` points and the others.
+double squared_distance(const std::array<Vec3, 4>& p, std::uint8_t first) {
+    return first == 1 ? geometry::squared_distance_to_triangle(p[0], p[1], p[2], p[3])
+                      : geometry::squared_distance_of_segments(p[0], p[1], p[2], p[3]);
+}
+
 double squared_distance(const EditMesh& mesh, const Pair& pair) {
-    const Vec3 &a = mesh.at(pair.vertex[0]), &b = mesh.at(pair.vertex[1]), &c = mesh.at(pair.vertex[2]),
-               &d = mesh.at(pair.vertex[3]);
-    return pair.first == 1 ? geometry::squared_distance_to_triangle(a, b, c, d)
-                           : geometry::squared_distance_of_segments(a, b, c, d);
+    const auto& v = pair.vertex;
+    return squared_distance({mesh.at(v[0]), mesh.at(v[1]), mesh.at(v[2]), mesh.at(v[3])}, pair.first);
 }
 
 /// How far the two primitives go together at most: the sum over both of the farthest vertex.
@@ -51,11 +55,8 @@ double together(const Pair& pair, const Lengths& length) {
     return pair.first == 1 ? a + std::max({b, c, d}) : std::max(a, b) + std::max(c, d);
 }
 
-/// How far two primitives may move together [m]. At `floor` they come no nearer: where wires crumple a film, step after step
-/// would take its share of the distance until the rest is lost in rounding.
-double room(double squared_distance, double floor) {
-    return kTogether * std::max(std::sqrt(squared_distance) - floor, 0.0);
-}
+/// How far two primitives may move together [m].
+double room(double squared_distance) { return kTogether * std::sqrt(squared_distance); }
 
 /// Each vertex and each edge belongs to the lowest face that has it, so that every pair is looked at once.
 struct Owned {
@@ -75,7 +76,10 @@ private:
     double most(const Face& face) const {
         return std::max({length_[face.vertices[0]], length_[face.vertices[1]], length_[face.vertices[2]]});
     }
-    bool in_danger(const Pair& pair, double way) const { return way > room(squared_distance(mesh_, pair), floor_); }
+    bool in_danger(const Pair& pair, double way) const {
+        const double d2 = squared_distance(mesh_, pair);
+        return way > std::min(room(d2), std::sqrt(d2) - floor_);
+    }
     void vertices_against_face(FaceId f, FaceId g, std::vector<Pair>& found) const;
 
     const EditMesh& mesh_;
@@ -109,8 +113,7 @@ void DangerousPairs::vertices_against_face(FaceId f, FaceId g, std::vector<Pair>
         if (!((owned_[f].vertices >> k) & 1U) || face.has(v)) continue;
         const Pair pair{{v, face.vertices[0], face.vertices[1], face.vertices[2]}, 1};
         const double way = together(pair, length_);
-        if (boxes_near<1, 3>({mesh_.at(v)}, t, way / kTogether + floor_) && in_danger(pair, way))
-            found.push_back(pair);
+        if (boxes_near<1, 3>({mesh_.at(v)}, t, way / kTogether + floor_) && in_danger(pair, way)) found.push_back(pair);
     }
 }
 
@@ -153,9 +156,9 @@ std::vector<Pair> dangerous_pairs(const EditMesh& mesh, const Lengths& length, d
 }
 
 /// How far each vertex may go of its `length`.
-Lengths held_by(const std::vector<Pair>& pairs, const EditMesh& mesh, const Lengths& length, double floor) {
+Lengths held_by(const std::vector<Pair>& pairs, const EditMesh& mesh, const Lengths& length) {
     std::vector<double> rooms(pairs.size());
-    parallel_for(pairs.size(), [&](std::size_t i) { rooms[i] = room(squared_distance(mesh, pairs[i]), floor); });
+    parallel_for(pairs.size(), [&](std::size_t i) { rooms[i] = room(squared_distance(mesh, pairs[i])); });
     Lengths allowed = length;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (together(pairs[i], length) <= rooms[i]) continue;
@@ -163,6 +166,45 @@ Lengths held_by(const std::vector<Pair>& pairs, const EditMesh& mesh, const Leng
         for (const VertexId v : pairs[i].vertex) allowed[v] = std::min(allowed[v], half);
     }
     return allowed;
+}
+
+double squared_distance_after(const EditMesh& mesh,
+                              const Pair& pair,
+                              const IdVector<VertexId, Vec3>& displacement,
+                              const Lengths& length,
+                              const Lengths& allowed) {
+    std::array<Vec3, 4> p;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const VertexId v = pair.vertex[k];
+        p[k] = mesh.at(v);
+        if (allowed[v] > 0.0) p[k] += allowed[v] / length[v] * displacement[v];
+    }
+    return squared_distance(p, pair.first);
+}
+
+/// Stops the vertices of pairs that are nearer than `floor` and would come nearer still. Step after step would else
+/// take its share of their distance until the rest is lost in rounding: wires do that to a film that they crumple.
+/// Where one pair stops another may have to, so this goes on until none does.
+void stop_at(double floor,
+             const std::vector<Pair>& pairs,
+             const EditMesh& mesh,
+             const IdVector<VertexId, Vec3>& displacement,
+             const Lengths& length,
+             Lengths& allowed) {
+    std::vector<Pair> near;
+    for (const Pair& pair : pairs)
+        if (std::sqrt(squared_distance(mesh, pair)) - together(pair, allowed) < floor) near.push_back(pair);
+    std::vector<VertexId> stopped;
+    do {
+        stopped.clear();
+        for (const Pair& pair : near) {
+            const double after = squared_distance_after(mesh, pair, displacement, length, allowed);
+            if (after >= floor * floor || after >= squared_distance(mesh, pair)) continue;
+            for (const VertexId v : pair.vertex)
+                if (allowed[v] > 0.0) stopped.push_back(v);
+        }
+        for (const VertexId v : stopped) allowed[v] = 0.0;
+    } while (!stopped.empty());
 }
 
 }  // namespace
@@ -198,7 +240,8 @@ std::size_t MotionLimit::apply(const EditMesh& mesh,
         pairs_ = dangerous_pairs(mesh, reach_, floor);
         for (double& d : reach_) d /= 1.0 + kRounding;
     }
-    const Lengths allowed = held_by(pairs_, mesh, length, floor);
+    Lengths allowed = held_by(pairs_, mesh, length);
+    stop_at(floor, pairs_, mesh, displacement, length, allowed);
     for (const VertexId v : displacement.ids()) {
         if (allowed[v] < length[v]) {
             displacement[v] *= allowed[v] / length[v];

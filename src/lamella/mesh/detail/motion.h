@@ -12,12 +12,12 @@ namespace lamella::mesh::detail {
 ///
 /// Two primitives (vertex and face, or two edges) that share no vertex and are a distance D apart cannot meet when
 /// their vertices move by at most 0.45 D each. A pair whose vertices move by no more than 0.9 D together is left
-/// alone; of every other pair all vertices are held to 0.45 D. D is less a floor of 1e-4 of the longest step, which keeps what is
-/// left of a distance above rounding.
+/// alone; of every other pair all vertices are held to 0.45 D. A pair nearer than 1e-7 of the longest step stops where
+/// it would come nearer, which keeps what is left of a distance above rounding.
 ///
-/// The pairs of the whole mesh are looked for at the first motion after the triangles changed, with what the motions that
-/// follow will probably need. Those that could hold a vertex on that way are kept, and while no vertex leaves it the
-/// motions are held by them alone, to the same bits as if all pairs were looked at again: any other pair was so far
+/// The pairs of the whole mesh are looked for at the first motion after the triangles changed, with what the motions
+/// that follow will probably need. Those that could hold a vertex on that way are kept, and while no vertex leaves it
+/// the motions are held by them alone, to the same bits as if all pairs were looked at again: any other pair was so far
 /// apart that it is out of danger to the end of the way.
 class MotionLimit {
 public:
