@@ -70,7 +70,7 @@ Films films_of(const Geometry& geometry,
         films.liquid_volume[e] = std::max(volume, thinnest * a);
         films.thickness[e] = films.liquid_volume[e] / a;
         films.concentration[e] = (evenly ? share * even[r].surfactant : gathered.surfactant[e]) / a;
-        films.tension[e] = law.tension(films.concentration[e]);
+        films.tension[e] = evenly ? law.reference_tension : law.tension(films.concentration[e]);
         films.seen_thickness[e] = volume > 0.0 && !evenly ? gathered.seen_volume[e] / volume : films.thickness[e];
         Vec3 u;
         if (evenly)

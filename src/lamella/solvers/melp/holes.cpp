@@ -26,7 +26,7 @@ double MelpSolver::fastest_edge() const {
     double fastest = 0.0;
     for (std::size_t i = 0; i < coarse_.size(); ++i)
         if (gas_[static_cast<std::size_t>(coarse_.region[i])].burst)
-            fastest = std::max(fastest, 2.0 * films_.tension[i] / (options_.liquid_density * films_.thickness[i]));
+            fastest = std::max(fastest, 2.0 * films_.tension[i] / (liquid_density() * films_.thickness[i]));
     return std::sqrt(fastest);
 }
 
@@ -45,7 +45,7 @@ void MelpSolver::pull_edges(double dt) {
     const std::vector<double> strength = edge_strength(geometry_, coarse_);
     const auto zone = edge_zone(geometry_, coarse_, strength, burst_regions());
     std::vector<double> mass = films_.liquid_volume;
-    for (double& m : mass) m *= options_.liquid_density;
+    for (double& m : mass) m *= liquid_density();
     const std::vector<Vec3> pull =
         shared_acceleration(geometry_, edge_pull(geometry_, coarse_, films_.tension, zone), mass);
     for (std::size_t i = 0; i < coarse_.size(); ++i) coarse_.velocity[i] += dt * pull[i];

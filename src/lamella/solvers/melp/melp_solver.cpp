@@ -27,15 +27,15 @@ constexpr double kMostOnEdges = 2.0;  // of the reference concentration
 
 MelpSolver::MelpSolver(const Options& options, const sim::SolverInput& input) : options_(options), input_(input) {
     if (!input_.films) throw InputError("the scene has no films; add a [[bubble]]");
-    law_ = {.reference_tension = input_.films->material.surface_tension,
-            .reference_concentration = options_.surfactant_concentration,
-            .temperature = options_.temperature};
-    if (law_.tension(2.0 * options_.surfactant_concentration) <= 0.0)
+    const film::Material& material = input_.films->material;
+    law_ = {.reference_tension = material.surface_tension,
+            .reference_concentration = film::start_surfactant(material),
+            .temperature = material.temperature};
+    if (law_.tension(2.0 * law_.reference_concentration) <= 0.0)
         throw InputError(fmt::format(
-            "melp.surfactant_concentration = {:.3g} mol/m^2 takes R T * that = {:.3g} N/m from the tension, "
-            "as much as material.surface_tension = {:.3g} N/m has",
-            options_.surfactant_concentration, law_.thermal_energy() * options_.surfactant_concentration,
-            law_.reference_tension));
+            "melp: the elasticity of an interface, {:.3g} N/m from material.surfactant = {:.3g} mol/m^2, is as high as "
+            "material.surface_tension = {:.3g} N/m: where a film has twice the surfactant it would have no tension",
+            film::elasticity(material), law_.reference_concentration, law_.reference_tension));
     refuse_unknown_films(*input_.films, options_);
 }
 
@@ -135,7 +135,7 @@ double MelpSolver::strongest_pull() const {
     const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, films_.concentration);
     double strongest = 0.0;
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
-        const double mass = options_.liquid_density * films_.thickness[i];
+        const double mass = liquid_density() * films_.thickness[i];
         const Vec3 pull = input_.films->material.gravity - (2.0 * law_.thermal_energy() / mass) * slope[i];
         strongest = std::max(strongest, norm(pull));
     }
@@ -145,7 +145,7 @@ double MelpSolver::strongest_pull() const {
 /// Gravity, air and surfactant act along the film; what fine particles will take is in coarse_.velocity then.
 SurfactantStep MelpSolver::push_along_film(double dt) {
     const std::size_t count = coarse_.size();
-    const double density = options_.liquid_density;
+    const double density = liquid_density();
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3& n = geometry_.normal[i];
         const double drag = dt * options_.air_drag / (density * films_.thickness[i]);
@@ -155,7 +155,7 @@ SurfactantStep MelpSolver::push_along_film(double dt) {
     }
     pull_edges(dt);
     marangoni_.assign(count, {});
-    if (options_.surfactant_concentration == 0.0) return {};
+    if (fine_.size() == 0) return {};  // constant tension
     SurfactantStep step = solve_surfactant(geometry_, coarse_.position, films_, coarse_.velocity, law_, density, dt,
                                            options_.solver_tolerance);
     const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, step.concentration);
@@ -170,7 +170,7 @@ std::vector<double> MelpSolver::masses() const {
     std::vector<double> mass(coarse_.size());
     for (std::size_t i = 0; i < mass.size(); ++i) {
         const double radius = gas_[static_cast<std::size_t>(coarse_.region[i])].radius();
-        mass[i] = options_.liquid_density * films_.liquid_volume[i] +
+        mass[i] = liquid_density() * films_.liquid_volume[i] +
                   options_.air_mass * input_.films->material.air_density * radius * geometry_.area[i];
     }
     return mass;
@@ -184,7 +184,7 @@ NormalStep MelpSolver::push_along_normals(double dt) {
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3& n = geometry_.normal[i];
         before[i] = dot(coarse_.velocity[i], n);
-        external[i] = (options_.liquid_density * films_.liquid_volume[i]) * input_.films->material.gravity;
+        external[i] = (liquid_density() * films_.liquid_volume[i]) * input_.films->material.gravity;
         if (dot(n, options_.wind) < 0.0)  // the side that the wind blows on
             external[i] += (options_.air_drag * geometry_.area[i]) * (options_.wind - coarse_.velocity[i]);
     }
@@ -301,6 +301,25 @@ void MelpSolver::move_coarse(double dt, const NormalStep& step) {
         coarse_.velocity[i] += slope[i] * (along + shift[i] - liquid);
     }
     coarse_.frame_normal = geometry_.normal;
+    pull_back_spikes(dt);
+}
+
+/// Where films fold at a junction, cohesion is stronger than the particle's own film: without a limit single particles
+/// leave their film there and stretch it until it tears. What a particle stands out of the patch of its neighbors
+/// beyond a tenth of the spacing is taken back by and by, and so is the velocity with which it left.
+void MelpSolver::pull_back_spikes(double dt) {
+    constexpr double kFree = 0.1;  // spacings
+    constexpr double kShare = 0.3;
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        const double height = geometry_.patch[i].c[0], most = kFree * spacing_;
+        const double back = kShare * (height - std::clamp(height, -most, most));
+        if (back == 0.0) continue;
+        const Vec3& n = geometry_.patch[i].frame.normal;
+        coarse_.position[i] += back * n;
+        gas_[static_cast<std::size_t>(coarse_.region[i])].volume += geometry_.area[i] * back;
+        const double away = -std::copysign(1.0, back) * dot(coarse_.velocity[i], n);
+        if (away > 0.0) coarse_.velocity[i] += std::min(away * dt, std::abs(back)) / dt * std::copysign(1.0, back) * n;
+    }
 }
 
 /// Fine particles go with the flow, onto the film where it is now, and stretch with it.
@@ -335,7 +354,7 @@ void MelpSolver::update_liquid() {
     transfer_.emplace(coarse_, geometry_.normal, fine_, support_radius());
     films_ = films_of(geometry_, coarse_, transfer_->to_coarse(coarse_, fine_), even_, law_);
     // The thick edge of a hole is no film: surfactant that does not fit on it goes into its liquid.
-    const double most = kMostOnEdges * options_.surfactant_concentration;
+    const double most = kMostOnEdges * law_.reference_concentration;
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         if (!gas_[static_cast<std::size_t>(coarse_.region[i])].burst) continue;
         films_.concentration[i] = std::min(films_.concentration[i], most);
@@ -370,7 +389,7 @@ double MelpSolver::slowest_period(const std::vector<Gas>& bubbles) const {
     for (const Gas& gas : bubbles) {
         const double radius = gas.radius();
         const double mass =
-            options_.liquid_density * material.thickness + options_.air_mass * material.air_density * radius;
+            liquid_density() * material.thickness + options_.air_mass * material.air_density * radius;
         constexpr double kDrum = 2.404825557695773;  // first zero of the Bessel function J_0
         const double wave = gas.closed ? std::numbers::pi : 2.0 * std::numbers::pi / kDrum;
         shortest = std::min(shortest, wave * radius * std::sqrt(mass / material.film_tension()));

@@ -49,6 +49,7 @@ public:
     double spacing() const { return spacing_; }
 
 private:
+    double liquid_density() const { return input_.films->material.liquid_density; }
     double support_radius() const { return options_.support_radius * spacing_; }
     double slowest_period(const std::vector<Gas>& bubbles) const;
     // The stages of a step, in order.
@@ -61,6 +62,7 @@ private:
     void filter_short_waves();
     void give_to_fine(double dt);
     void move_coarse(double dt, const NormalStep& step);
+    void pull_back_spikes(double dt);
     void move_fine(double dt);
     void pull_edges(double dt);
     void vent(double dt);

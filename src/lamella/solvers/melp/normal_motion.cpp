@@ -12,9 +12,14 @@
 namespace lamella::melp {
 
 Cohesion cohesion(double gamma, double beta) {
-    const double g = std::min(gamma, 1.0);
-    const double f = g + beta * g * (1.0 - g), slope = 1.0 + beta * (1.0 - 2.0 * g);
-    return {2.0 - f - g * slope, slope};
+    // Beyond 1 the attraction falls as fast as this: with gamma^-2 borders of three bubbles crumpled, without a fall
+    // single particles were drawn into the point where three bubbles and the air meet.
+    constexpr double kPower = 6.0;
+    const double shared = std::min(gamma, 1.0), excess = std::max(gamma, 1.0);
+    const double slope = gamma < 1.0 ? 1.0 + beta * (1.0 - 2.0 * gamma) : (1.0 - beta) * std::pow(gamma, -kPower);
+    const double f = shared + beta * shared * (1.0 - shared) +
+                     (1.0 - beta) * (1.0 - std::pow(excess, 1.0 - kPower)) / (kPower - 1.0);
+    return {2.0 - f - gamma * slope, slope};
 }
 
 namespace {
@@ -61,6 +66,22 @@ Pairs pair_strengths(const NormalProblem& p) {
     return pairs;
 }
 
+/// What keeps films that fly at each other from passing through, as a pair: a stiff push back where particle i stands
+/// deeper than half a spacing in the other bubble [N / m^2, times the areas a force]. Gas alone presses films a quarter
+/// of a spacing into each other.
+Vec3 push_apart(const NormalProblem& p, std::size_t i, std::size_t j, double weight) {
+    constexpr double kFree = 0.5 / 3.0;  // support radii, which are 3 spacings unless asked for otherwise
+    constexpr double kStiff = 36.0;      // tension / support radius^2
+    const Vec3 between = p.geometry.normal[i] - p.geometry.normal[j];
+    const double square = squared_norm(between);
+    if (square < 2.0) return {};  // films that do not face each other
+    const double reach = p.geometry.neighbors.other.kernel.support_radius;
+    const double depth = dot(p.coarse.position[i] - p.coarse.position[j], between) / std::sqrt(square) - kFree * reach;
+    if (depth <= 0.0) return {};
+    const double tension = p.interface_tension[i] + p.interface_tension[j];
+    return (-kStiff * tension / (reach * reach) * depth * weight / std::sqrt(square)) * between;
+}
+
 /// Tension, cohesion and gas pressure along the normals. [N]
 std::vector<double> forces(const NormalProblem& p, const Pairs& pairs, const std::vector<double>& gas_area) {
     const Geometry& g = p.geometry;
@@ -71,7 +92,10 @@ std::vector<double> forces(const NormalProblem& p, const Pairs& pairs, const std
         const Neighbors& same = g.neighbors.same;
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) pull += pairs.same[k] * (x[same.index[k]] - x[i]);
         const Neighbors& other = g.neighbors.other;
-        for (std::size_t k = other.begin(i); k < other.end(i); ++k) pull += pairs.other[k] * (x[other.index[k]] - x[i]);
+        for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
+            const std::size_t j = other.index[k];
+            pull += pairs.other[k] * (x[j] - x[i]) + (g.area[i] * g.area[j]) * push_apart(p, i, j, other.weight[k]);
+        }
         const Images& images = g.images;
         for (std::size_t k = images.begin(i); k < images.end(i); ++k) pull += pairs.image[k] * (images.place[k] - x[i]);
         force[i] =

@@ -59,9 +59,6 @@ struct Options {
     double steps_per_period = 20.0;
     double cfl = 0.5;
     double largest_step = 0.0;
-    double liquid_density = 997.0;
-    double surfactant_concentration = 1e-7;
-    double temperature = 298.15;
     double outside_pressure = 101325.0;
     double air_mass = 0.0;
     double air_drag = 0.0;
@@ -85,7 +82,7 @@ struct Options {
                {"what [[film]] ends on: wire: held, the same air on both sides; plate: held on a plate that closes in "
                 "the gas of a hemisphere; wet_plate: sliding on such a plate"});
         option("fine_ratio", fine_ratio, sim::between(0, 1000),
-               {"fine particles, the liquid, per coarse one; 0: films of even thickness without a flow in them", "-",
+               {"fine particles, the liquid, per coarse one; 0: films of even thickness and constant tension", "-",
                 "[Deng22]: 16 to 64"});
         option("support_radius", support_radius, sim::between(2.0, 6.0),
                {"of the kernels, in spacings of the coarse particles", "-", "[method sheet 16]"});
@@ -97,11 +94,6 @@ struct Options {
                {"of the slowest swing of the smallest bubble; 0: only how far particles move limits the step"});
         option("cfl", cfl, sim::between(0.01, 2.0), {"how far particles move in a step, in spacings"});
         option("largest_step", largest_step, sim::at_least(0.0), {"upper limit of the time step; 0: none", "time"});
-        option("liquid_density", liquid_density, sim::more_than(0.0), {"of the film", "mass/length^3"});
-        option("surfactant_concentration", surfactant_concentration, sim::at_least(0.0),
-               {"per interface, at which the tension is the material's; 0: no surfactant", "mol/m^2", "[Deng22]"});
-        option("temperature", temperature, sim::more_than(0.0),
-               {"of the film: surfactant lowers the tension by R T each", "K"});
         option("outside_pressure", outside_pressure, sim::more_than(0.0), {"of the air", "Pa"});
         option(
             "air_mass", air_mass, sim::between(0.0, 2.0),

@@ -1,9 +1,12 @@
 #include "lamella/solvers/melp/start.h"
 
 #include "lamella/core/error.h"
+#include "lamella/core/parallel.h"
 #include "lamella/film/noise.h"
+#include "lamella/film/surfactant.h"
 #include "lamella/mesh/volume.h"
 #include "lamella/solvers/melp/open_films.h"
+#include "lamella/solvers/melp/surface.h"
 
 #include <fmt/format.h>
 
@@ -27,27 +30,18 @@ std::int64_t bubble_count(const film::Problem& films) {
     return std::count_if(regions.begin(), regions.end(), [](const auto& r) { return r.kind == RegionKind::kClosed; });
 }
 
-/// Where bubbles meet, films fold within a few spacings. Coarser ones, ones with a flow in their films, and three at a
-/// time were seen to tear there.
-void refuse_coarse_contacts(const film::Problem& films, const Options& options) {
+/// Where bubbles meet, films fold within a few spacings: folds have to fit onto the bubble.
+void refuse_coarse_contacts(const film::Problem& films) {
     const auto& regions = films.mesh.regions;
     const auto bubbles = bubble_count(films);
     if (bubbles < 2) return;
-    if (bubbles > 2)
-        throw InputError(fmt::format(
-            "melp: {} bubbles: more than two are not built yet; use solver vortex_sheet or equilibrium", bubbles));
-    if (options.fine_ratio > 0)
-        throw InputError(
-            fmt::format("melp.fine_ratio = {}: several bubbles with a flow in their films are not built yet; "
-                        "fine_ratio = 0 moves them without one",
-                        options.fine_ratio));
-    constexpr double kFinest = 10.0;
+    constexpr double kFinest = 6.0;
     for (const RegionId r : regions.ids()) {
         const double radius = std::cbrt(0.75 * regions[r].target_volume / std::numbers::pi);
         if (regions[r].kind == RegionKind::kClosed && films.edge_length > 1.001 * radius / kFinest)
             throw InputError(
                 fmt::format("resolution.edge_length = {:.4g} m is too coarse for bubble {} among others: at most a "
-                            "tenth of its radius of {:.4g} m will do",
+                            "sixth of its radius of {:.4g} m will do",
                             films.edge_length, index(r), radius));
     }
 }
@@ -137,6 +131,20 @@ void deform(std::vector<Vec3>& position, const Vec3& center, const StartOptions&
     }
 }
 
+/// What lies at particle i between its film and those of other bubbles that it has pushed through [m^3]: the gases
+/// press films of a partition a few tenths of a spacing into each other until cohesion holds them. Negative where they
+/// gape.
+double overlap_volume(const CoarseParticles& coarse, const Geometry& geometry, std::size_t i) {
+    const Neighbors& other = geometry.neighbors.other;
+    double depth = 0.0;
+    for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
+        const std::size_t j = other.index[k];
+        depth += 0.5 * geometry.area[j] * other.weight[k] *
+                 dot(coarse.position[i] - coarse.position[j], geometry.normal[i] - geometry.normal[j]);
+    }
+    return geometry.area[i] * depth;
+}
+
 }  // namespace
 
 void refuse_unknown_films(const film::Problem& films, const Options& options) {
@@ -174,7 +182,7 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
             throw InputError("melp.fine_ratio = 0: films burst only with fine particles, whose liquid the edge gathers");
         if (bubble_count(films) > 1) throw InputError("melp: [[event]] in scenes of several bubbles is not built yet");
     }
-    refuse_coarse_contacts(films, options);
+    refuse_coarse_contacts(films);
     refuse_wrong_volumes(films);
 }
 
@@ -259,7 +267,7 @@ void append(Start& start,
         const double thick = thickness.at(x, x - center);
         const double soap = options.start.surfactant == StartSurfactant::kUniform ? 1.0 : thick;
         start.fine.liquid_volume.push_back(thick * material.thickness * share);
-        start.fine.surfactant.push_back(soap * options.surfactant_concentration * share);
+        start.fine.surfactant.push_back(soap * film::start_surfactant(material) * share);
         start.fine.thickness.push_back(thick * material.thickness);
     }
     deform(region.coarse.position, center, options.start);
@@ -288,7 +296,7 @@ void append(Start& start,
     start.gas.push_back(gas);
     start.even.push_back(
         region.fine.position.empty()
-            ? EvenFilm{material.thickness * region.area, options.surfactant_concentration * region.area, region.held}
+            ? EvenFilm{material.thickness * region.area, film::start_surfactant(material) * region.area, region.held}
             : EvenFilm{.held = region.held});
 }
 
@@ -341,7 +349,7 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
         region.volume = ball ? ball->radius * region.area / 3.0 : volume[r];
         region.coarse = ball ? on_ball(*ball, particles_on(region.area, h)) : Sample{surface.vertex, surface.normal};
         const std::size_t fine = static_cast<std::size_t>(options.fine_ratio) * region.coarse.position.size();
-        region.fine = ball ? on_ball(*ball, fine) : on_triangles(surface.triangle, fine);
+        region.fine = ball ? on_ball(*ball, fine) : on_triangles(surface, fine);
         total_area += region.area;
         append(start, std::move(region), static_cast<std::int32_t>(index(r)), films.mesh.regions[r].target_volume,
                films.material, options, thickness);
@@ -375,10 +383,13 @@ std::vector<double> particle_volumes(const CoarseParticles& coarse,
     }
     for (std::size_t r = 0; r < gas.size(); ++r) center[r] = center[r] / area[r];
     for (const RimPiece& piece : rims) center[static_cast<std::size_t>(piece.region)] = piece.a;  // in the plate
-    for (std::size_t i = 0; i < coarse.size(); ++i) {
+    std::vector<double> share(coarse.size());
+    parallel_for(coarse.size(), [&](std::size_t i) {
         const auto r = static_cast<std::size_t>(coarse.region[i]);
-        volume[r] += geometry.area[i] * dot(coarse.position[i] - center[r], geometry.normal[i]) / 3.0;
-    }
+        share[i] = gas[r].held ? geometry.area[i] * dot(coarse.position[i] - center[r], geometry.normal[i]) / 3.0
+                               : star_volume(coarse, geometry, i, center[r]) - 0.5 * overlap_volume(coarse, geometry, i);
+    });
+    for (std::size_t i = 0; i < coarse.size(); ++i) volume[static_cast<std::size_t>(coarse.region[i])] += share[i];
     for (std::size_t r = 0; r < gas.size(); ++r) volume[r] *= gas[r].calibration;
     return volume;
 }
