@@ -27,6 +27,10 @@ toml++ ${tomlplusplus_VERSION}, libpng ${PNG_VERSION_STRING}")
 
 # Parts that are built only where their dependency is present, as `lamella version` lists them: "cuda, render".
 set(LAMELLA_OPTIONAL_PARTS "")
+if(LAMELLA_HAS_CUDA)
+  list(APPEND LAMELLA_OPTIONAL_PARTS cuda)
+  string(APPEND LAMELLA_LIBRARY_VERSIONS ", CUDA ${CUDAToolkit_VERSION}")
+endif()
 if(embree_FOUND)
   list(APPEND LAMELLA_OPTIONAL_PARTS render)
   string(APPEND LAMELLA_LIBRARY_VERSIONS ", Embree ${embree_VERSION}")

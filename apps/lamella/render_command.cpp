@@ -91,9 +91,6 @@ sim::Frame shown_frame(const PictureSource& source, std::size_t index, const Ren
     return render::periodic_images(source.frame(index), options.images);
 }
 
-/// What is flat is looked at from above, unless the camera is told otherwise.
-bool is_flat(const sim::Frame& frame) { return frame.box && frame.box->dimension == 2; }
-
 /// One camera and one color scale for a whole sequence: everything fits, and a color means the same in all of it.
 void share_view(const PictureSource& source, const std::vector<std::size_t>& chosen, RenderOptions* options) {
     render::PictureOptions* const picture = &options->picture;
@@ -208,7 +205,7 @@ void complete(const PictureSource& source, const std::vector<std::size_t>& chose
     if (!options->thickness.empty()) picture.thickness = parse_quantity(options->thickness, "m");
     if (!options->video.empty() && fs::path(options->video).extension() != ".mp4")
         throw InputError(fmt::format("{}: a film ends in .mp4", options->video));
-    if (is_flat(source.frame(chosen[0]))) picture.view = {.azimuth_deg = -90.0, .elevation_deg = 90.0, .zoom = 1.3};
+    picture.view = render::usual_view(source.frame(chosen[0]));
     if (!picture.field.empty()) picture.view.shift = 0.09;
     if (!options->camera.empty()) read_camera(options->camera, &picture.view);
     if (options->frame == "all") share_view(source, chosen, options);
@@ -309,7 +306,9 @@ void add_render_command(CLI::App& app, int& exit_code) {
         ->type_name("R");
     command->add_option("--field", picture.field, "Color films or balls by this field, with a legend")
         ->type_name("NAME");
-    command->add_option("--camera", options->camera, "Where it stands, in degrees, and how near; by default -62,16,1")
+    command
+        ->add_option("--camera", options->camera,
+                     "Where it stands, in degrees, and how near; by default -62,16,1; flat things are seen from above")
         ->type_name("AZIMUTH,ELEVATION[,ZOOM]");
     command->add_option("--background", picture.background, "dark, light, transparent, environment, or a color")
         ->type_name("NAME|#RRGGBB");

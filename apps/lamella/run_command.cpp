@@ -1,4 +1,5 @@
 #include "lamella/core/build_info.h"
+#include "lamella/core/cuda.h"
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/core/progress.h"
@@ -49,7 +50,9 @@ void add_common_options(CLI::App& command, RunOptions& options) {
 }
 
 void check_device(const std::string& device) {
-    if (device != "cpu") throw InputError("this build has no CUDA support; use --device cpu");
+    if (device != "cuda") return;
+    const std::string fault = cuda_fault();
+    if (!fault.empty()) throw InputError(fault);
 }
 
 /// "runs/coarsening-2d" for scenes/bubble/coarsening-2d.toml.

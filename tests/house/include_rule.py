@@ -38,6 +38,7 @@ FOLDERS["sweep"] = list(FOLDERS)
 LIBRARIES = {
     r"tbb/|oneapi/tbb/": ["core"],
     r"Random123/": ["core"],
+    r"cub/": ["core"],
     r"Eigen/|unsupported/Eigen/": ["linalg"],
     r"hdf5": ["io"],
     r"H5[A-Za-z]*public\.h": ["io"],

@@ -17,7 +17,9 @@ varying vec3 vCenter;
 varying float vRadius;
 varying float vValue;
 varying float vPicked;
+varying float vSmall;
 uniform int picked;
+uniform float focus;            // pixels per unit of length at distance 1
 void main() {
   int ball = gl_VertexID / 4;
   ivec2 texel = ivec2(ball % WIDTH, ball / WIDTH);
@@ -32,6 +34,7 @@ void main() {
   vec3 right = vec3(1.0, 0.0, 0.0);
   vec3 up = vec3(0.0, 1.0, 0.0);
   float reach = 1.0;
+  vSmall = 0.0;
   if (!flat2d) {
     // The outline of a ball seen from near is larger than its radius.
     vec3 toEye = cameraPosition - center;
@@ -40,6 +43,7 @@ void main() {
     right = normalize(cross(abs(z.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), z));
     up = cross(z, right);
     float ratio = min(vRadius / distance, 0.95);
+    vSmall = focus * ratio < SMALL ? 1.0 : 0.0;
     reach = 1.0 / sqrt(1.0 - ratio * ratio);
   }
   vWorld = center + vRadius * reach * (right * corner.x + up * corner.y);
@@ -52,20 +56,23 @@ const FRAGMENT = /* glsl */ `
 uniform sampler2D map;
 uniform vec2 range;
 uniform bool flat2d;
+uniform vec3 tint;              // where there are no values
 uniform bool byField;
 uniform bool byThickness;       // the values are [nm]
-uniform mat4 viewProjection;
+uniform vec2 depthOf;           // of the projection: depth from the distance along the view's axis
+uniform vec3 forward;
 varying vec2 vAt;
 varying vec3 vWorld;
 varying vec3 vCenter;
 varying float vRadius;
 varying float vValue;
 varying float vPicked;
+varying float vSmall;
 ${STUDIO}
 ${REFLECTED}
 
 vec3 base() {
-  if (!byField) return vec3(0.35, 0.5, 0.6);
+  if (!byField) return tint;
   if (unknown(vValue)) return vec3(0.12);
   if (byThickness) return ${BRIGHTER.toFixed(1)} * reflected(vValue, 1.0);
   float x = clamp((vValue - range.x) / max(range.y - range.x, 1e-30), 0.0, 1.0);
@@ -96,15 +103,19 @@ void main() {
   float cosine = clamp(-dot(n, ray), 0.0, 1.0);
   float edge = pow(1.0 - cosine, 4.0);
   float up = (mat3(viewMatrix) * n).y;
-  vec3 light = color * (0.42 + 0.38 * up + 0.35 * cosine) + (0.025 + 0.22 * edge) * studio(mat3(viewMatrix) * reflect(ray, n));
+  vec3 light = color * (0.42 + 0.38 * up + 0.35 * cosine);
+  // What a ball of a few pixels mirrors would only sparkle, and is most of the work.
+  if (vSmall < 0.5) light += (0.025 + 0.22 * edge) * studio(mat3(viewMatrix) * reflect(ray, n));
+  else light += (0.05 + 0.3 * edge) * (0.8 + 0.6 * up);
   light += vPicked * (0.08 + 0.9 * smoothstep(0.55, 0.25, cosine));
   gl_FragColor = vec4(light, 1.0);
-  vec4 projected = viewProjection * vec4(hit, 1.0);
-  gl_FragDepth = 0.5 + 0.5 * projected.z / projected.w;
+  float far = dot(hit - cameraPosition, forward);
+  gl_FragDepth = 0.5 + 0.5 * (depthOf.y / far - depthOf.x);
 }
 `;
 
 const WIDTH = 1024; // of the textures
+const SMALL = 9; // [px]: radius below which balls mirror no room
 
 function dataTexture(values: Float32Array<ArrayBuffer>, height: number, format: THREE.PixelFormat): THREE.DataTexture {
   const texture = new THREE.DataTexture(values, WIDTH, height, format, THREE.FloatType);
@@ -114,11 +125,10 @@ function dataTexture(values: Float32Array<ArrayBuffer>, height: number, format: 
 
 export class Balls {
   readonly object: THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>;
-  private readonly viewProjection = new THREE.Matrix4();
 
-  constructor(reflected: Record<string, THREE.IUniform>, map: THREE.Texture, clip: THREE.Vector4) {
+  constructor(tint: THREE.Color, reflected: Record<string, THREE.IUniform>, map: THREE.Texture, clip: THREE.Vector4) {
     const material = new THREE.ShaderMaterial({
-      defines: { WIDTH },
+      defines: { WIDTH, SMALL: SMALL.toFixed(1) },
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
       side: THREE.DoubleSide,
@@ -131,34 +141,62 @@ export class Balls {
         values: { value: null },
         flat2d: { value: false },
         ...reflected,
+        tint: { value: tint },
         byField: { value: false },
         byThickness: { value: false },
         picked: { value: -1 },
         clip: { value: clip },
         map: { value: map },
         range: { value: new THREE.Vector2(0, 1) },
-        viewProjection: { value: this.viewProjection },
+        depthOf: { value: new THREE.Vector2() },
+        forward: { value: new THREE.Vector3() },
+        focus: { value: 1 },
       },
     });
     this.object = new THREE.Mesh(new THREE.BufferGeometry(), material);
     this.object.frustumCulled = false;
     this.object.renderOrder = 1;
-    this.object.onBeforeRender = (_renderer, _scene, camera) => {
-      this.viewProjection.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+    this.object.onBeforeRender = (renderer, _scene, camera) => {
+      const projection = camera.projectionMatrix.elements;
+      const height = renderer.getRenderTarget()?.height ?? 1;
+      material.uniforms["depthOf"]!.value.set(projection[10], projection[14]);
+      material.uniforms["focus"]!.value = 0.5 * height * projection[5]!;
+      camera.getWorldDirection(material.uniforms["forward"]!.value as THREE.Vector3);
       material.uniformsNeedUpdate = true;
     };
   }
 
   private count = -1;
+  private isWhole = true; // all balls are drawn
 
   /// Two triangles a ball; the number of a corner says whose it is and which.
   private setCount(count: number): void {
     this.count = count;
-    const corners = new Uint32Array(6 * count);
-    for (let i = 0; i < count; ++i) corners.set([4 * i, 4 * i + 1, 4 * i + 3, 4 * i, 4 * i + 3, 4 * i + 2], 6 * i);
     this.object.geometry.dispose();
     this.object.geometry = new THREE.BufferGeometry();
-    this.object.geometry.setIndex(new THREE.BufferAttribute(corners, 1));
+    this.object.geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(6 * count), 1));
+    this.isWhole = false;
+    this.choose(null);
+  }
+
+  /// Draws only these, in this order; null: all.
+  choose(balls: Uint32Array | null): void {
+    const index = this.object.geometry.index;
+    if (!index || (balls === null && this.isWhole)) return;
+    const corners = index.array as Uint32Array;
+    const count = balls?.length ?? this.count;
+    for (let i = 0; i < count; ++i) {
+      const first = 4 * (balls ? balls[i]! : i);
+      const at = 6 * i;
+      corners[at] = corners[at + 3] = first;
+      corners[at + 1] = first + 1;
+      corners[at + 2] = corners[at + 4] = first + 3;
+      corners[at + 5] = first + 2;
+    }
+    index.addUpdateRange(0, 6 * count); // the rest need not travel
+    index.needsUpdate = true;
+    this.object.geometry.setDrawRange(0, 6 * count);
+    this.isWhole = balls === null;
   }
 
   pick(index: number): void {

@@ -128,6 +128,12 @@ export interface Points {
   radius: Float32Array | null;
 }
 
+/// Balls that films run around.
+export interface Solids {
+  position: Float32Array;
+  radius: Float32Array;
+}
+
 export interface Frame {
   solver: string;
   time: number;
@@ -139,6 +145,7 @@ export interface Frame {
   pointCount: { shown: number; all: number };
   films: Films | null;
   points: Points | null;
+  solids: Solids | null;
   fields: Field[];
   lengthUnit: string;
   bytes: number;
@@ -190,6 +197,15 @@ function points(message: Message): Points | null {
   const radius = find(message, "points", "radius", 1, Float32Array);
   if (radius && 3 * radius.length !== position.length) wrong("points and radii do not fit together");
   checkFinite(position, "a point");
+  return { position, radius };
+}
+
+function solids(message: Message): Solids | null {
+  const position = find(message, "solids", "position", 3, Float32Array);
+  const radius = find(message, "solids", "radius", 1, Float32Array);
+  if (!position && !radius) return null;
+  if (!position || !radius || 3 * radius.length !== position.length) wrong("solids and their radii do not fit together");
+  checkFinite(position, "a solid");
   return { position, radius };
 }
 
@@ -256,6 +272,7 @@ export function decodeFrame(buffer: ArrayBuffer): Frame {
     pointCount: counts(header["points"], "points"),
     films: itsFilms,
     points: itsPoints,
+    solids: solids(message),
     fields: itsFields,
     lengthUnit,
     bytes: buffer.byteLength,

@@ -11,6 +11,8 @@ export class Pace {
   private level = 0;
   private lastMotion = 0;
   private isSharp = true;
+  /// Whether any picture took long: then it is worth the while to look for what need not be drawn.
+  isSlowHere = false;
 
   /// Called when there is time for a picture; how sharp to draw now, or null for not at all.
   next(now: number, changed: boolean): number | null {
@@ -26,6 +28,7 @@ export class Pace {
 
   /// What the last picture took [ms].
   drawn(cost: number, sharpness: number): void {
+    if (cost > SLOW) this.isSlowHere = true;
     if (sharpness !== SHARPNESS[this.level]) return; // the sharp one after a motion says nothing about coarse ones
     if (cost > 4 * SLOW) this.level = COARSEST;
     else if (cost > SLOW) this.level = Math.min(this.level + 1, COARSEST);

@@ -6,11 +6,12 @@ import { mapTexture } from "./colormap";
 import { Box, ColorTable, FieldPlace, Frame } from "./decode";
 import { FILM_COLORS, findField, magnitudes, Range, thicknessField } from "./field";
 import { FilmMesh } from "./films";
+import { seenBalls } from "./hidden_balls";
 import { reflectedUniforms } from "./interference";
 import { Tubes } from "./lines";
 import { Pace } from "./pace";
 import { pickBall, pickRegion, Plane, Ray } from "./picking";
-import { Axes, defaultAxes, distanceToFit } from "./viewpoint";
+import { Axes, distanceToFit, usualAxes, Vector } from "./viewpoint";
 
 export interface Look {
   coloring: string; // FILM_COLORS or a field's key
@@ -91,6 +92,7 @@ export class Stage {
   private readonly borders: Tubes;
   private readonly wires: Tubes;
   private readonly balls: Balls;
+  private readonly solids: Balls;
   private readonly boxLines = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x6c7a90, transparent: true, opacity: 0.35 }));
   private readonly bounds = new THREE.Box3();
   private readonly forward = new THREE.Vector3();
@@ -120,10 +122,11 @@ export class Stage {
     this.films = new FilmMesh(reflected, map, this.clip);
     this.borders = new Tubes(new THREE.Color(0.5, 0.56, 0.62), 0.35, this.clip);
     this.wires = new Tubes(new THREE.Color(0.72, 0.5, 0.28), 0.5, this.clip);
-    this.balls = new Balls(reflected, map, this.clip);
+    this.balls = new Balls(new THREE.Color(0.35, 0.5, 0.6), reflected, map, this.clip);
+    this.solids = new Balls(new THREE.Color(0.06, 0.06, 0.07), reflected, map, this.clip);
     const background = fullScreen(BACKGROUND);
     background.renderOrder = -1;
-    this.scene.add(background, this.films.object, this.borders.object, this.wires.object, this.balls.object, this.boxLines);
+    this.scene.add(background, this.films.object, this.borders.object, this.wires.object, this.balls.object, this.solids.object, this.boxLines);
     this.screen.add(fullScreen(SCREEN, { light: this.light }));
 
     this.camera.up.set(0, 0, 1);
@@ -180,12 +183,25 @@ export class Stage {
     const target = sharpness === 1 && this.films.object.visible ? this.target : this.plain;
     if (target === this.plain) target.setSize(Math.ceil(sharpness * this.target.width), Math.ceil(sharpness * this.target.height));
     this.light.value = target.texture;
+    if (this.balls.object.visible) this.balls.choose(this.pace.isSlowHere ? this.seenBalls() : null);
     if (this.films.object.visible) this.films.sort(this.camera.getWorldDirection(this.forward));
     this.renderer.setRenderTarget(target);
     this.renderer.clear();
     this.renderer.render(this.scene, this.camera);
     this.renderer.setRenderTarget(null);
     this.renderer.render(this.screen, this.camera);
+  }
+
+  /// Flat foams hide nothing.
+  private seenBalls(): Uint32Array | null {
+    if (!this.frame?.points || this.frame.box?.dimension === 2) return null;
+    this.camera.updateMatrixWorld();
+    const axis = (k: number): Vector => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, k).toArray();
+    const height = this.target.height;
+    const focus = (0.5 * height) / Math.tan((this.camera.fov * Math.PI) / 360);
+    const shift = this.camera.view ? (this.camera.view.offsetY / this.camera.view.fullHeight) * height : 0;
+    const eye = { position: this.camera.position.toArray(), right: axis(0), up: axis(1), back: axis(2), focus, width: this.target.width, height: height + 2 * Math.abs(shift) };
+    return seenBalls(this.frame.points.position, this.radius, eye, this.clip.toArray());
   }
 
   show(frame: Frame, look: Look): void {
@@ -206,6 +222,7 @@ export class Stage {
       this.wires.show(frame.films?.wires ?? null, 0.0024 * size);
       this.radius = this.radii(frame, size);
       this.balls.show(frame.points?.position ?? null, this.radius, values("points"), field ? look.range : null, flat);
+      this.solids.show(frame.solids?.position ?? null, frame.solids?.radius ?? new Float32Array(0), null, null, false);
       this.showBox(frame.box);
       this.shown = { frame, coloring: look.coloring };
     }
@@ -272,8 +289,9 @@ export class Stage {
   /// The whole frame into view.
   fit(): void {
     if (this.bounds.isEmpty()) return;
-    const flat = this.frame?.box?.dimension === 2;
-    const axes = defaultAxes(flat);
+    if (!this.frame) return;
+    const flat = this.frame.box?.dimension === 2;
+    const axes = usualAxes(this.frame);
     const distance = MARGIN * this.distanceToFit(axes);
     this.bounds.getCenter(this.controls.target);
     this.camera.position.copy(this.controls.target).addScaledVector(new THREE.Vector3(...axes.back), distance);

@@ -1,12 +1,13 @@
 // node --test: the decoder against messages made by hand, whole and damaged.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { DecodeError, decodeColors, decodeFrame, decodeMessage, headOn } from "../src/decode";
+import { DecodeError, decodeColors, decodeFrame, decodeMessage, Frame, headOn } from "../src/decode";
 import { numberText, quantityText, tickTexts, unitText } from "../src/words";
 import { pickBall, pickRegion, Plane } from "../src/picking";
-import { Axes, defaultAxes, distanceToFit } from "../src/viewpoint";
+import { Axes, distanceToFit, usualAxes } from "../src/viewpoint";
 import { Pace } from "../src/pace";
 import { farthestFirst } from "../src/depth_order";
+import { Eye, seenBalls } from "../src/hidden_balls";
 import { magnitudes, rangeOf } from "../src/field";
 
 type Typed = Float32Array | Uint32Array | Int32Array | Int16Array;
@@ -213,7 +214,65 @@ test("the whole frame fits into the view, from near as from far", () => {
   // The near face of the box is one unit nearer than its middle; half of the picture at distance 1 is 0.5 wide, 0.25 tall.
   assert.equal(distanceToFit(frame, Float32Array.of(0), [1, 1, 1], front, 0.5, 0.25), 1 + 1 / 0.25);
   assert.equal(distanceToFit(frame, Float32Array.of(3), [1, 1, 1], front, 0.5, 0.25), 3 + 3 / 0.25);
-  const { right, up, back } = defaultAxes(false);
-  const cross = [up[1] * back[2] - up[2] * back[1], up[2] * back[0] - up[0] * back[2], up[0] * back[1] - up[1] * back[0]];
-  cross.forEach((x, k) => assert.ok(Math.abs(x - right[k]!) < 1e-15));
+});
+
+test("one looks on films in a plane, and on others from the side", () => {
+  const film = (...normals: [number, number, number][]): Frame =>
+    decodeFrame(pack(HEADER, replaced("vertices", "normal", Int16Array.from(normals.flatMap((n) => [...n.map((x) => Math.round(32767 * x)), 0])))));
+  const along = (axes: Axes, n: [number, number, number]): number => Math.abs(n.reduce((sum, x, k) => sum + x * axes.back[k]!, 0));
+  for (const n of [[0, 0, 1], [1, 0, 0], [0, 1, 0], [0.6, -0.8, 0]] as [number, number, number][]) assert.ok(along(usualAxes(film(n, n, n)), n) > 0.7, String(n));
+  const usual = usualAxes(film([0, 0, 1], [0, 1, 0], [1, 0, 0]));
+  assert.ok(Math.abs(usual.back[2] - Math.sin((16 * Math.PI) / 180)) < 1e-12);
+  for (const { right, up, back } of [usual, usualAxes(film([0, 0, 1], [0, 0, 1], [0, 0, -1]))]) {
+    const cross = [up[1] * back[2] - up[2] * back[1], up[2] * back[0] - up[0] * back[2], up[0] * back[1] - up[1] * back[0]];
+    cross.forEach((x, k) => assert.ok(Math.abs(x - right[k]!) < 1e-15));
+  }
+});
+
+test("solids come as balls, and damaged ones are refused", () => {
+  const solids = (position: Typed, radius: Typed): Entry[] => [
+    { set: "solids", name: "position", components: 3, values: position, unit: "m" },
+    { set: "solids", name: "radius", components: 1, values: radius, unit: "m" },
+  ];
+  assert.equal(decodeFrame(pack(HEADER, triangle())).solids, null);
+  const frame = decodeFrame(pack(HEADER, [...triangle(), ...solids(Float32Array.of(1, 2, 3), Float32Array.of(5))]));
+  assert.deepEqual(frame.solids?.position, Float32Array.of(1, 2, 3));
+  assert.deepEqual(frame.solids?.radius, Float32Array.of(5));
+  const axes: Axes = { right: [1, 0, 0], up: [0, 1, 0], back: [0, 0, 1] };
+  assert.equal(distanceToFit(frame, new Float32Array(0), [1, 2, 3], axes, 1, 1), 10); // all of it fits into the picture
+  for (const [position, radius] of [[Float32Array.of(1, 2, 3), new Float32Array(0)], [Float32Array.of(1, NaN, 3), Float32Array.of(5)]] as const)
+    assert.throws(() => decodeFrame(pack(HEADER, [...triangle(), ...solids(position, radius)])), DecodeError);
+});
+
+test("balls that any ray meets first are drawn, most of the hidden ones are not", () => {
+  let state = 7;
+  const random = (): number => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
+  const count = 20000;
+  const side = Math.cbrt(count);
+  const position = Float32Array.from({ length: 3 * count }, () => side * random());
+  const radius = Float32Array.from({ length: count }, () => 0.1 + 0.9 * random() ** 3);
+  const plane: Plane = [1, 0, 0, 0.8 * side];
+  // From far, from near with balls at the edge of the picture, and from within.
+  for (const away of [2.2, 0.75, 0.1]) {
+    const [c, s] = [Math.cos(0.4), Math.sin(0.4)];
+    const eye: Eye = { position: [side * (0.5 + c * away), side * (0.5 + s * away), side / 2], right: [-s, c, 0], up: [0, 0, 1], back: [c, s, 0], focus: 700, width: 500, height: 360 };
+    const seen = seenBalls(position, radius, eye, plane);
+    const drawn = new Set(seen);
+    assert.equal(drawn.size, seen.length);
+    if (away > 1) assert.ok(seen.length < 0.4 * count, `${seen.length} of ${count} are drawn`);
+    let met = 0;
+    for (let i = 0; i < 600; ++i) {
+      const [x, y] = [(random() - 0.5) * eye.width, (random() - 0.5) * eye.height];
+      const d = [0, 1, 2].map((k) => eye.right[k]! * x + eye.up[k]! * y - eye.back[k]! * eye.focus) as [number, number, number];
+      const length = Math.hypot(...d);
+      const ray = { origin: eye.position, direction: d.map((v) => v / length) as [number, number, number] };
+      const first = pickBall({ position, radius }, radius, ray, plane, false);
+      if (first < 0) continue;
+      ++met;
+      assert.ok(drawn.has(first), `ball ${first} of radius ${radius[first]} is seen at ${x}, ${y} and not drawn`);
+    }
+    assert.ok(met > 100);
+  }
+  const last = seenBalls(position, radius, { position: [side / 2, side / 2, 3 * side], right: [1, 0, 0], up: [0, 1, 0], back: [0, 0, -1], focus: 700, width: 500, height: 360 }, plane);
+  assert.equal(last.length, 0); // all lie behind the eye
 });

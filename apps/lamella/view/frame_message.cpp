@@ -148,6 +148,16 @@ void add_points(Message& message, const sim::Points& points) {
     }
 }
 
+void add_solids(Message& message, const std::vector<sim::Solid>& solids) {
+    std::vector<float> position, radius;
+    for (const sim::Solid& solid : solids) {
+        append(position, solid.center);
+        radius.push_back(static_cast<float>(solid.radius));
+    }
+    message.add("solids", "position", "m", 3, std::span<const float>(position));
+    message.add("solids", "radius", "m", 1, std::span<const float>(radius));
+}
+
 Json box_json(const sim::Box& box) {
     return {{"dimension", box.dimension},
             {"origin", {box.origin[0], box.origin[1], box.origin[2]}},
@@ -163,6 +173,7 @@ std::string frame_message(const sim::Frame& frame, const DetailLimits& limits) {
     Message message;
     if (!surface.empty()) add_films(message, surface, limits.smooth);
     if (!points.empty()) add_points(message, points);
+    if (!frame.solids.empty()) add_solids(message, frame.solids);
 
     Json scalars = Json::array();
     for (const sim::Scalar& scalar : frame.scalars)

@@ -15,7 +15,7 @@ struct DetailLimits {
 };
 
 /// A frame as the page draws it (message.h): films cut apart along their borders and smooth (smooth_films.h), borders
-/// and wires as segments, points, every field of one, three or nine components in single precision.
+/// and wires as segments, points, solids, every field of one, three or nine components in single precision.
 /// @throws InputError  the frame contradicts itself
 std::string frame_message(const sim::Frame& frame, const DetailLimits& limits = {});
 

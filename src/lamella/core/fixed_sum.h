@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "lamella/core/host_device.h"
 #include "lamella/core/parallel.h"
 
 namespace lamella {
@@ -17,14 +18,16 @@ namespace lamella {
 /// 2^-91 * bound per term. Holds up to 2^31 terms.
 class FixedSum {
 public:
-    /// @param bound  an upper bound of the sum of |terms|; twice as much is still safe. 0 for a sum of zeros.
-    explicit FixedSum(double bound = 0.0) {
+    /// A sum of zeros.
+    LAMELLA_HOST_DEVICE FixedSum() : FixedSum(0.0) {}
+    /// @param bound  an upper bound of the sum of |terms|; twice as much is still safe
+    LAMELLA_HOST_DEVICE explicit FixedSum(double bound) {
         const int exponent = bound > 0.0 && std::isfinite(bound) ? std::ilogb(bound) : 0;
         high_scale_ = std::ldexp(1.0, 59 - exponent);
         high_unit_ = std::ldexp(1.0, exponent - 59);
     }
 
-    void add(double term) {
+    LAMELLA_HOST_DEVICE void add(double term) {
         const double scaled = term * high_scale_;
         const auto high = static_cast<std::int64_t>(scaled);
         const double rest = scaled - static_cast<double>(high);
@@ -47,19 +50,19 @@ public:
     }
 
     /// Adds another sum of the same bound.
-    FixedSum& operator+=(const FixedSum& other) {
+    LAMELLA_HOST_DEVICE FixedSum& operator+=(const FixedSum& other) {
         high_ += other.high_;
         low_ += other.low_;
         return *this;
     }
 
-    double value() const {
+    LAMELLA_HOST_DEVICE double value() const {
         return static_cast<double>(high_) * high_unit_ + static_cast<double>(low_) * (high_unit_ / kLowScale);
     }
 
-    /// The two integers, for sums over processes.
-    std::int64_t& high() { return high_; }
-    std::int64_t& low() { return low_; }
+    /// The two integers, for sums over processes and GPU threads.
+    LAMELLA_HOST_DEVICE std::int64_t& high() { return high_; }
+    LAMELLA_HOST_DEVICE std::int64_t& low() { return low_; }
 
 private:
     static constexpr double kLowScale = 2147483648.0;  // 2^31
@@ -82,12 +85,14 @@ FixedSum fixed_sum(std::size_t count, double bound, Term&& term) {
         [](FixedSum a, const FixedSum& b) { return a += b; });
 }
 
+/// Terms that a FixedSum holds for certain.
+inline constexpr double kMostTerms = 2147483648.0;  // 2^31
+
 /// The same without a known bound: a first pass finds the largest |term|. The scale follows from that term alone, so
 /// terms that are zero (vacant slots) change no bit; what is dropped is below 2^-60 of the largest term, per term.
 template <class Term>
 double exact_sum(std::size_t count, Term&& term) {
     const double largest = parallel_max(count, 0.0, [&](std::size_t i) { return std::abs(term(i)); });
-    constexpr double kMostTerms = 2147483648.0;  // 2^31
     return fixed_sum(count, largest * kMostTerms, term).value();
 }
 

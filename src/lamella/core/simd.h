@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#ifndef __CUDACC__
 #include <experimental/simd>
+#endif
 
 #include "lamella/core/host_device.h"
 
@@ -15,6 +17,16 @@
 namespace lamella {
 
 inline constexpr std::size_t kLanes = 8;
+
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double select(bool condition, double yes, double no) { return condition ? yes : no; }
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double square_root(double a) { return std::sqrt(a); }
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double larger(double a, double b) { return a > b ? a : b; }
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double smaller(double a, double b) { return b < a ? b : a; }
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double absolute(double a) { return std::fabs(a); }
+/// Nearest whole number, ties to even.
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double nearest(double a) { return std::nearbyint(a); }
+
+#ifndef __CUDACC__  // nvcc cannot read <experimental/simd>, and a GPU has one bubble per thread anyway
 
 namespace stdx = std::experimental;
 using Simd = stdx::simd<double, stdx::simd_abi::deduce_t<double, kLanes>>;
@@ -30,23 +42,17 @@ LAMELLA_ALWAYS_INLINE Simd gather_lanes(const double* p, const std::uint32_t* in
     return Simd([&](auto lane) { return p[index[lane]]; });
 }
 
-LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double select(bool condition, double yes, double no) { return condition ? yes : no; }
 LAMELLA_ALWAYS_INLINE Simd select(const Simd::mask_type& condition, const Simd& yes, const Simd& no) {
     Simd result = no;
     stdx::where(condition, result) = yes;
     return result;
 }
-
-LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double square_root(double a) { return std::sqrt(a); }
 LAMELLA_ALWAYS_INLINE Simd square_root(const Simd& a) { return stdx::sqrt(a); }
-
-LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double larger(double a, double b) { return a > b ? a : b; }
 LAMELLA_ALWAYS_INLINE Simd larger(const Simd& a, const Simd& b) { return stdx::max(a, b); }
-LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double smaller(double a, double b) { return b < a ? b : a; }
 LAMELLA_ALWAYS_INLINE Simd smaller(const Simd& a, const Simd& b) { return stdx::min(a, b); }
-
-/// Nearest whole number, ties to even.
-LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE double nearest(double a) { return std::nearbyint(a); }
+LAMELLA_ALWAYS_INLINE Simd absolute(const Simd& a) { return stdx::abs(a); }
 LAMELLA_ALWAYS_INLINE Simd nearest(const Simd& a) { return stdx::nearbyint(a); }
+
+#endif
 
 }  // namespace lamella

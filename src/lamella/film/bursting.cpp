@@ -1,9 +1,11 @@
 #include "lamella/film/bursting.h"
 
+#include "lamella/core/error.h"
 #include "lamella/core/random.h"
 #include "lamella/mesh/area.h"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 namespace lamella::film {
@@ -34,6 +36,12 @@ std::optional<RegionId> random_outer_bubble(const mesh::FoamMesh& mesh, std::uin
     if (outer.empty()) return std::nullopt;
     const double u = uniform01(random_bits(seed, RandomStream::kFilmRupture, 0, draw));
     return outer[std::min(outer.size() - 1, static_cast<std::size_t>(u * static_cast<double>(outer.size())))];
+}
+
+void refuse_punctures(const Problem& films, const char* solver) {
+    for (const Event& event : films.events)
+        if (event.kind == Event::Kind::kPuncture)
+            throw InputError(std::string(solver) + ": [[event]] with kind = \"puncture\" is for solver melp");
 }
 
 }  // namespace lamella::film

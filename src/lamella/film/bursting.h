@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "lamella/film/problem.h"
 #include "lamella/mesh/foam_mesh.h"
 
 namespace lamella::film {
@@ -16,5 +17,8 @@ bool share_film(const mesh::FoamMesh& mesh, mesh::RegionId a, mesh::RegionId b);
 /// A bubble drawn at random among those that touch the outside, all with the same probability; nothing when none does.
 /// @param draw  which draw of the run this is: the same seed and draw give the same bubble
 std::optional<mesh::RegionId> random_outer_bubble(const mesh::FoamMesh& mesh, std::uint64_t seed, std::uint64_t draw);
+
+/// @throws InputError  the scene has an [[event]] of kind "puncture", which `solver` does not know
+void refuse_punctures(const Problem& films, const char* solver);
 
 }  // namespace lamella::film

@@ -62,13 +62,15 @@ inline constexpr mesh::RegionId kRandomBubble{0xfffffffeU};
 
 /// A change of the regions at a time: [[event]] of a scene.
 struct Event {
-    enum class Kind { kPop, kInflate };
+    enum class Kind { kPop, kInflate, kPuncture };
     Kind kind = Kind::kPop;
     double time = 0.0;                          ///< [s]
     mesh::RegionId region = mesh::kOutside;     ///< which bubble
     mesh::RegionId into = kLargestNeighbor;     ///< pop: the region it joins
     double volume = 0.0;                        ///< inflate: its new volume [m^3]
     double duration = 0.0;                      ///< inflate: how long it takes, for the solvers that move [s]
+    Vec3 center{};                              ///< puncture: the film nearest to it gets a hole [m]
+    double radius = 0.0;                        ///< puncture: of the hole; 0: as small as can be resolved [m]
 };
 
 /// A ball that a film runs around, as a stick through it, and that takes the film with it. It moves and turns as it is

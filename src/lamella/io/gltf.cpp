@@ -141,11 +141,11 @@ std::string add_field(Glb& glb, const DrawnPart& part, const sim::Field& field) 
     return fmt::format(",\"{}\":{}", name, glb.add_floats(values, field.components, false));
 }
 
-std::string mesh_json(Glb& glb, const DrawnPart& part, const std::vector<sim::Field>& fields, std::size_t material) {
+std::string mesh_json(Glb& glb, const DrawnPart& part, std::size_t material) {
     std::string attributes = fmt::format("\"POSITION\":{}", glb.add_floats(y_up(flattened(part.position)), 3, true));
     if (!part.normal.empty())
         attributes += fmt::format(",\"NORMAL\":{}", glb.add_floats(y_up(flattened(part.normal)), 3, false));
-    for (const sim::Field& field : fields)
+    for (const sim::Field& field : part.fields)
         if (field.components == 1 || field.components == 3) attributes += add_field(glb, part, field);
     const std::string faces =
         part.triangles.empty() ? "\"mode\":0" : fmt::format("\"indices\":{}", glb.add_triangles(part.triangles));
@@ -157,8 +157,11 @@ std::string mesh_json(Glb& glb, const DrawnPart& part, const std::vector<sim::Fi
                        quoted(part.name), attributes, faces, material, extras);
 }
 
-/// Clear films with interference for their mean thickness, where it is known; balls are plain.
+/// Clear films with interference for their mean thickness, where it is known; balls are plain, solids dark.
 std::string material_json(const DrawnPart& part, const sim::Surface& surface) {
+    if (part.name == "solids")
+        return "{\"name\":\"solids\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.05,0.05,0.055,1],"
+               "\"metallicFactor\":0,\"roughnessFactor\":0.3}}";
     const sim::Field* thickness = surface.find_of_vertices("thickness_nm");
     if (part.regions[0] < 0 || thickness == nullptr)
         return fmt::format(
@@ -186,8 +189,7 @@ void write_glb(std::ostream& out, const sim::Frame& frame) {
     std::string meshes, materials, nodes, numbers;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const char* comma = i == 0 ? "" : ",";
-        const bool film = parts[i].regions[0] >= 0;
-        meshes += comma + mesh_json(glb, parts[i], film ? frame.surface.vertex_fields : frame.points.fields, i);
+        meshes += comma + mesh_json(glb, parts[i], i);
         materials += comma + material_json(parts[i], frame.surface);
         nodes += fmt::format("{}{{\"name\":{},\"mesh\":{}}}", comma, quoted(parts[i].name), i);
         numbers += fmt::format("{}{}", comma, i);

@@ -106,6 +106,19 @@ void write_balls(std::ostream& out, const sim::Points& points) {
     out << "    }\n";
 }
 
+void write_solids(std::ostream& out, const std::vector<sim::Solid>& solids) {
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+        const Vec3& c = solids[i].center;
+        const std::string r = shortest_text(solids[i].radius);
+        out << fmt::format("    def Sphere \"solid_{}\"\n    {{\n        double radius = {}\n", i, r)
+            << fmt::format("        float3[] extent = [(-{0}, -{0}, -{0}), ({0}, {0}, {0})]\n", r)
+            << "        color3f[] primvars:displayColor = [(0.05, 0.05, 0.055)]\n"
+            << fmt::format("        double3 xformOp:translate = ({}, {}, {})\n", shortest_text(c[0]),
+                           shortest_text(c[1]), shortest_text(c[2]))
+            << "        uniform token[] xformOpOrder = [\"xformOp:translate\"]\n    }\n";
+    }
+}
+
 }  // namespace
 
 void write_usda(std::ostream& out, const sim::Frame& frame) {
@@ -118,6 +131,7 @@ void write_usda(std::ostream& out, const sim::Frame& frame) {
     out << "    custom double time = " << shortest_text(frame.time) << '\n';
     if (!frame.surface.empty()) write_films(out, frame.surface);
     if (!frame.points.empty()) write_balls(out, frame.points);
+    write_solids(out, frame.solids);
     out << "}\n";
     detail::finish(out);
 }

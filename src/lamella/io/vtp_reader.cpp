@@ -242,8 +242,26 @@ private:
             frame_.time_unit = read_text(tag);
         } else if (name == "length_unit") {
             frame_.points.length_unit = read_text(tag);
+        } else if (name == detail::kSolidCenter || name == detail::kSolidRadius) {
+            read_solids(tag);
         } else {
             read_box_value(tag);
+        }
+    }
+
+    /// Centers, then radii.
+    void read_solids(const ArrayTag& tag) {
+        const auto count = parse_count(tag.get("NumberOfTuples"));
+        const bool centers = tag.name() == detail::kSolidCenter;
+        if (!count || *count == 0 || (centers ? !frame_.solids.empty() : frame_.solids.size() != *count))
+            throw error(tag, "does not fit to the other solids");
+        const auto values = read<double>(tag, "Float64", (centers ? 3 : 1) * *count);
+        if (centers) frame_.solids.resize(*count);
+        for (std::size_t i = 0; i < *count; ++i) {
+            if (centers)
+                frame_.solids[i].center = {{values[3 * i], values[3 * i + 1], values[3 * i + 2]}};
+            else
+                frame_.solids[i].radius = values[i];
         }
     }
 

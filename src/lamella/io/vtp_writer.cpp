@@ -98,6 +98,17 @@ void write_box(VtpText& out, const sim::Box& box, const std::string& length_unit
               std::span<const std::int32_t>(periodic));
 }
 
+void write_solids(VtpText& out, const std::vector<sim::Solid>& solids) {
+    if (solids.empty()) return;
+    std::vector<double> centers, radii;
+    for (const sim::Solid& solid : solids) {
+        centers.insert(centers.end(), solid.center.v, solid.center.v + 3);
+        radii.push_back(solid.radius);
+    }
+    out.array({detail::kSolidCenter, "m", 3, tuples(solids.size())}, std::span<const double>(centers));
+    out.array({detail::kSolidRadius, "m", 1, tuples(solids.size())}, std::span<const double>(radii));
+}
+
 void write_field_data(VtpText& out, const sim::Frame& frame) {
     out.line("<FieldData>");
     out.array({detail::kTimeValue, frame.time_unit, 1, tuples(1)}, std::span(&frame.time, 1));
@@ -106,6 +117,7 @@ void write_field_data(VtpText& out, const sim::Frame& frame) {
     out.string("time_unit", frame.time_unit);
     out.string("length_unit", frame.points.length_unit);
     if (frame.box) write_box(out, *frame.box, frame.points.length_unit);
+    write_solids(out, frame.solids);
     for (std::size_t k = 0; k < frame.scalars.size(); ++k) {
         const sim::Scalar& scalar = frame.scalars[k];
         const std::string ours = fmt::format(" scalar=\"{}\" text=\"{}\"", k, xml_escaped(scalar.text));

@@ -39,17 +39,19 @@ Thickness thicknesses(const sim::Frame& frame, const FilmPatches& patches) {
     const auto field = detail::thickness_field(frame);
     if (field && field->place != NamedField::kPoints)
         return {joined_values(patches, detail::corner_values(patches, *field))};
-    const Bounds bounds = frame_bounds(frame);
-    const auto on_stage = [&](const Vec3& p) { return (p - bounds.center) / bounds.radius; };
     std::vector<double> values(patches.corner_point.size());
-    if (field) {
-        std::vector<Vec3> places;
-        for (const Vec3& p : frame.points.position) places.push_back(on_stage(p));
-        const detail::ParticleAverage average(places, field->field->values);
-        parallel_for(values.size(),
-                     [&](std::size_t c) { values[c] = average.at(on_stage(patches.point[patches.corner_point[c]])); });
+    if (const auto particles = detail::thickness_particles(frame)) {
+        const detail::ParticleAverage average(*particles,
+                                              detail::particle_spacing(frame.surface, particles->position.size()));
+        for (std::size_t t = 0; t < patches.triangles.size(); ++t) {
+            const auto regions = detail::regions_beside(frame.surface, patches.source[t]);
+            for (const std::uint32_t c : patches.triangles[t])
+                values[c] = average.at(patches.point[patches.corner_point[c]], regions).value_or(0.0);
+        }
         return {values};
     }
+    const Bounds bounds = frame_bounds(frame);
+    const auto on_stage = [&](const Vec3& p) { return (p - bounds.center) / bounds.radius; };
     for (std::size_t t = 0; t < patches.triangles.size(); ++t)
         for (const std::uint32_t c : patches.triangles[t])
             values[c] = detail::assumed_thickness(on_stage(patches.point[patches.corner_point[c]]), patches.film[t]);
@@ -89,8 +91,7 @@ sim::Surface baked_surface(const sim::Frame& frame, const std::string& field, bo
     for (std::size_t t = 0; t < patches.triangles.size(); ++t) {
         const std::uint32_t f = patches.source[t];
         // Patches are turned so that their front is the region with the larger number.
-        const std::array<std::int32_t, 2> sides =
-            f < from.regions.size() ? from.regions[f] : std::array<std::int32_t, 2>{};
+        const std::array<std::int32_t, 2> sides = detail::regions_beside(from, f);
         surface.regions.push_back({std::min(sides[0], sides[1]), std::max(sides[0], sides[1])});
         for (std::size_t k = 0; k < 3; ++k) source[patches.triangles[t][k]] = patches.source_corner[t][k];
     }

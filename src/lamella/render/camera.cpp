@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace lamella::render {
 
@@ -23,6 +24,7 @@ Bounds frame_bounds(const sim::Frame& frame) {
         for (const std::uint32_t v : t)
             if (v < frame.surface.position.size()) include(frame.surface.position[v], 0.0);
     for (std::size_t i = 0; i < frame.points.size(); ++i) include(frame.points.position[i], radius(i));
+    for (const sim::Solid& solid : frame.solids) include(solid.center, solid.radius);
     if (!(low[0] <= high[0])) throw InputError("there is nothing to be seen: no films and no points");
 
     Bounds bounds{0.5 * (low + high), 0.0};
@@ -32,6 +34,8 @@ Bounds frame_bounds(const sim::Frame& frame) {
                 bounds.radius = std::max(bounds.radius, norm(frame.surface.position[v] - bounds.center));
     for (std::size_t i = 0; i < frame.points.size(); ++i)
         bounds.radius = std::max(bounds.radius, norm(frame.points.position[i] - bounds.center) + radius(i));
+    for (const sim::Solid& solid : frame.solids)
+        bounds.radius = std::max(bounds.radius, norm(solid.center - bounds.center) + solid.radius);
     if (!(bounds.radius > 0.0) || !std::isfinite(bounds.radius))
         throw InputError("all that could be seen lies in one point, or nowhere");
     return bounds;
@@ -44,6 +48,64 @@ Bounds joined(const Bounds& a, const Bounds& b) {
     if (distance + a.radius <= b.radius) return b;
     const double radius = 0.5 * (distance + a.radius + b.radius);
     return {a.center + (radius - a.radius) / distance * apart, radius};
+}
+
+namespace {
+
+/// The normal of films that all lie in one plane; none for others.
+std::optional<Vec3> common_normal(const sim::Surface& s) {
+    Vec3 sum;
+    double area = 0.0;
+    for (const auto& t : s.triangles) {
+        if (*std::max_element(t.begin(), t.end()) >= s.position.size()) return std::nullopt;
+        const Vec3 own = cross(s.position[t[1]] - s.position[t[0]], s.position[t[2]] - s.position[t[0]]);
+        sum += dot(own, sum) < 0.0 ? -own : own;
+        area += norm(own);
+    }
+    constexpr double kFlat = 0.999;  // films that bulge by less than three degrees
+    if (!(area > 0.0) || norm(sum) < kFlat * area) return std::nullopt;
+    return sum / norm(sum);
+}
+
+/// The zoom with which things in a plane fill a picture that is a third wider than tall, seen from where `view` stands.
+double filling_zoom(const sim::Frame& frame, const View& view) {
+    const Bounds bounds = frame_bounds(frame);
+    const double az = view.azimuth_deg * std::numbers::pi / 180.0, el = view.elevation_deg * std::numbers::pi / 180.0;
+    const Vec3 right{{-std::sin(az), std::cos(az), 0.0}};
+    const Vec3 up{{-std::sin(el) * std::cos(az), -std::sin(el) * std::sin(az), std::cos(el)}};
+    constexpr double kWider = 4.0 / 3.0, kNearer = 1.08;  // what lies before the middle looks larger
+    double most = 0.0;
+    const auto include = [&](const Vec3& p, double r) {
+        const Vec3 arm = p - bounds.center;
+        most = std::max({most, (std::abs(dot(arm, right)) + r) / kWider, std::abs(dot(arm, up)) + r});
+    };
+    for (const auto& t : frame.surface.triangles)
+        for (const std::uint32_t v : t) include(frame.surface.position[v], 0.0);
+    for (const sim::Solid& solid : frame.solids) include(solid.center, solid.radius);
+    return bounds.radius / (kNearer * most);
+}
+
+}  // namespace
+
+View usual_view(const sim::Frame& frame) {
+    if (frame.box && frame.box->dimension == 2) return {.azimuth_deg = -90.0, .elevation_deg = 90.0, .zoom = 1.3};
+    View view;
+    if (!frame.points.radius.empty()) return view;
+    const std::optional<Vec3> normal = common_normal(frame.surface);
+    if (!normal) return view;
+    constexpr double kDegrees = 180.0 / std::numbers::pi;
+    const double lie = std::abs((*normal)[2]);
+    if (lie > 0.7) {  // it lies: y goes up in the picture, and the film mirrors what is above
+        view.azimuth_deg = -90.0;
+        view.elevation_deg = 58.0;
+        view.zoom = filling_zoom(frame, view);
+        return view;
+    }
+    const double toward = std::atan2((*normal)[1], (*normal)[0]) * kDegrees;
+    const double turned = std::remainder(toward - view.azimuth_deg, 180.0);  // from the usual place to before the film
+    constexpr double kOblique = 40.0;
+    if (std::abs(turned) > kOblique) view.azimuth_deg += turned - std::copysign(kOblique, turned);
+    return view;
 }
 
 Camera::Camera(const View& view, const Bounds& bounds, std::size_t width, std::size_t height) {

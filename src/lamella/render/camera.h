@@ -25,6 +25,10 @@ Bounds frame_bounds(const sim::Frame& frame);
 /// The smallest ball around both.
 Bounds joined(const Bounds& a, const Bounds& b);
 
+/// From where a frame is best seen: what is flat and two-dimensional from straight above; a film in a plane, which
+/// would be seen from its edge, so that one looks on it; all else a little from the side and above.
+View usual_view(const sim::Frame& frame);
+
 /// Rays through the points of a picture.
 class Camera {
 public:

@@ -21,14 +21,19 @@ struct Resumption {
     std::string note;  ///< what is worth telling, or ""
 };
 
+Device device_of(const RunSettings& settings) {
+    return settings.device == "cuda" ? Device::kCuda : Device::kCpu;
+}
+
 Resumption read_last_checkpoint(const RunFolder& folder,
                                 const scene::Scene& scene,
-                                const sim::SolverRegistry& registry) {
+                                const sim::SolverRegistry& registry,
+                                Device device) {
     std::string damage;
     for (const std::filesystem::path& file : {folder.checkpoint(), folder.previous_checkpoint()}) {
         if (!std::filesystem::exists(file)) continue;
         try {
-            auto solver = scene::create_solver(scene, registry);
+            auto solver = scene::create_solver(scene, registry, device);
             RunState state = read_checkpoint(file, scene.solver, *solver);
             return {std::move(solver), std::move(state),
                     damage.empty() ? "" : damage + "; continued from the checkpoint before it"};
@@ -37,7 +42,7 @@ Resumption read_last_checkpoint(const RunFolder& folder,
         }
     }
     if (!damage.empty()) throw InputError(damage);
-    return {scene::create_solver(scene, registry), std::nullopt, "there was no checkpoint yet: started over"};
+    return {scene::create_solver(scene, registry, device), std::nullopt, "there was no checkpoint yet: started over"};
 }
 
 }  // namespace
@@ -47,7 +52,7 @@ RunResult run_scene(const scene::Scene& scene,
                     const std::filesystem::path& path,
                     const RunSettings& settings) {
     // What can be wrong with the input is found before anything is written.
-    auto solver = scene::create_solver(scene, registry);
+    auto solver = scene::create_solver(scene, registry, device_of(settings));
     const std::string resolved = scene::resolved_toml(scene, registry, scene::FileNames::kCopies);
     // A run keeps copies of the films it starts from, so that it can be resumed and repeated wherever it is. They are read
     // before the folder is cleared: they may be in it.
@@ -73,7 +78,7 @@ RunResult resume_run(const std::filesystem::path& path,
     const RunFolder folder = RunFolder::open(path);
     const scene::Scene scene = scene::load_scene(folder.scene(), {}, registry);
     const Schedule schedule(scene.time, settings.until);
-    Resumption from = read_last_checkpoint(folder, scene, registry);
+    Resumption from = read_last_checkpoint(folder, scene, registry, device_of(settings));
 
     if (settings.until && is_after(from.solver->time(), *settings.until))
         throw InputError(fmt::format("{} is at time {:.6g} already, beyond {:.6g}", path.string(), from.solver->time(),

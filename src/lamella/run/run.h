@@ -27,7 +27,7 @@ struct RunProgress {
 struct RunSettings {
     std::optional<double> until = {};       ///< stop at this time instead of the scene's end
     Existing existing = Existing::kRefuse;  ///< what to do with a run that is in the folder
-    std::string device = "cpu";             ///< recorded in run.json
+    std::string device = "cpu";             ///< or "cuda"; recorded in run.json
     /// The input is right and the folder is taken; work begins.
     std::function<void(const scene::Scene&)> on_begin = [](const scene::Scene&) {};
     /// The number of the signal that asks to stop, 0 for none. Asked after every step, and while the solver starts.

@@ -58,8 +58,8 @@ Schedule::Schedule(const scene::TimeOptions& options, std::optional<double> unti
                                      fastest, end_, kMostOutputs));
 }
 
-OutputTime Schedule::next(double time) const {
-    const double frame = next_regular(time, options_.frame_rate);
+OutputTime Schedule::next(double time, double slow_motion) const {
+    const double frame = next_regular(time, slow_motion * options_.frame_rate);
     const double row = std::min(next_regular(time, options_.series_rate),
                                 next_logarithmic(time, options_.log_start, options_.series_per_decade));
     const double first = std::min({frame, row, end_});

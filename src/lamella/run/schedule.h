@@ -32,7 +32,8 @@ public:
     double end() const { return end_; }
 
     /// The first output time after `time` (which is itself an output time, or 0). At the end, and after it, the end.
-    OutputTime next(double time) const;
+    /// @param slow_motion  so many times as many frames
+    OutputTime next(double time, double slow_motion = 1.0) const;
 
 private:
     scene::TimeOptions options_;

@@ -195,14 +195,16 @@ film::Event event_of(const EventTable& event, const FoamMesh& mesh, const Source
         return there ? mesh.regions[static_cast<mesh::RegionId>(region)].kind : RegionKind::kGone;
     };
     const bool random = event.region == 0 && event.kind == film::Event::Kind::kPop;
+    if (event.repeat > 1 && !(event.interval > 0.0))
+        throw InputError(where, "event.interval = 0 puts all repetitions at one time; say how far apart they are");
+    if (event.kind == film::Event::Kind::kPuncture)
+        return {.kind = event.kind, .time = event.time, .center = event.center, .radius = event.radius};
     if (!random && kind_of(event.region) != RegionKind::kClosed)
         throw InputError(where, fmt::format("event.region = {} is no bubble; there are {} regions beside the outside",
                                             event.region, mesh.regions.size() - 1));
     if (event.into >= 0 && (kind_of(event.into) == RegionKind::kGone || (!random && event.into == event.region)))
         throw InputError(where, fmt::format("event.into = {} is no region that bubble {} could join", event.into,
                                             event.region));
-    if (event.repeat > 1 && !(event.interval > 0.0))
-        throw InputError(where, "event.interval = 0 puts all repetitions at one time; say how far apart they are");
     const auto region = random ? film::kRandomBubble : static_cast<mesh::RegionId>(event.region);
     const double first = random ? 0.0 : mesh.regions[region].target_volume;
     return {.kind = event.kind,

@@ -223,14 +223,19 @@ struct EventTable {
     double volume = 0.0;
     double factor = 1.0;
     double duration = 0.0;
+    Vec3 center;
+    double radius = 0.0;
 
     template <class Visitor>
     void visit(Visitor&& option) {
         option("time", time, sim::at_least(0.0), {"when", "time"});
         option("kind", kind,
                sim::choices<film::Event::Kind>(
-                   {{"pop", film::Event::Kind::kPop}, {"inflate", film::Event::Kind::kInflate}}),
-               {"pop: the film to another region bursts; inflate: a bubble gets another volume"});
+                   {{"pop", film::Event::Kind::kPop},
+                    {"inflate", film::Event::Kind::kInflate},
+                    {"puncture", film::Event::Kind::kPuncture}}),
+               {"pop: the film to another region bursts; inflate: a bubble gets another volume; puncture: a film gets a"
+                " hole, for solver melp"});
         option("repeat", repeat, sim::between(1, 1'000'000), {"how often it happens"});
         option("interval", interval, sim::at_least(0.0), {"between one time and the next", "time"});
         option("region", region, sim::at_least(0), {"which bubble; 0: pop one at random that touches the outside"});
@@ -240,6 +245,9 @@ struct EventTable {
         option("factor", factor, sim::more_than(0.0), {"inflate: the new volume over the first"});
         option("duration", duration, sim::at_least(0.0),
                {"inflate: how long it takes, for the solvers that move", "time"});
+        option("center", center, sim::any_number(), {"puncture: the nearest film gets the hole", "length"});
+        option("radius", radius, sim::at_least(0.0),
+               {"puncture: of the hole; 0: as small as can be resolved", "length"});
     }
 };
 

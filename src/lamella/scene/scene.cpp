@@ -251,8 +251,12 @@ std::string resolved_toml(const Scene& scene, const sim::SolverRegistry& registr
            detail::toml_text(solver.name, resolved_options(scene, solver), comments_from(solver.describe()));
 }
 
-std::unique_ptr<sim::Solver> create_solver(const Scene& scene, const sim::SolverRegistry& registry) {
+std::unique_ptr<sim::Solver> create_solver(const Scene& scene,
+                                           const sim::SolverRegistry& registry,
+                                           Device device) {
     const sim::SolverEntry& solver = chosen_solver(scene, registry);
+    if (device != Device::kCpu && !solver.cuda)
+        throw InputError(fmt::format("solver {} does not run on a GPU; use --device cpu", solver.name));
     const auto read_table = [directory = directory_of(scene)](const std::string& file) {
         io::CsvTable table = io::read_csv(std::filesystem::path(directory) / file);
         return sim::NumberTable{std::move(table.header), std::move(table.rows)};
@@ -261,7 +265,8 @@ std::unique_ptr<sim::Solver> create_solver(const Scene& scene, const sim::Solver
                           .end_time = scene.time.end,
                           .read_table = read_table,
                           .options = table_of(scene, solver.name),
-                          .films = scene.films});
+                          .films = scene.films,
+                          .device = device});
 }
 
 }  // namespace lamella::scene

@@ -92,7 +92,9 @@ std::string resolved_toml(const Scene& scene,
                           FileNames file_names = FileNames::kAbsolute);
 
 /// The solver of a scene, its options checked, not started.
-std::unique_ptr<sim::Solver> create_solver(const Scene& scene, const sim::SolverRegistry& registry);
+std::unique_ptr<sim::Solver> create_solver(const Scene& scene,
+                                           const sim::SolverRegistry& registry,
+                                           Device device = Device::kCpu);
 
 /// Every solver of this build (solvers.cpp: one plain call each).
 sim::SolverRegistry all_solvers();

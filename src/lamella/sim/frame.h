@@ -71,6 +71,12 @@ struct Surface {
     std::size_t regions_described() const;
 };
 
+/// A ball that films run around, as a stick through a film.
+struct Solid {
+    Vec3 center;          ///< [m]
+    double radius = 0.0;  ///< [m]
+};
+
 /// What can be seen of a simulation at one time. Everything downstream of a solver (files, measures, plots,
 /// pictures) sees this and nothing else.
 struct Frame {
@@ -81,6 +87,7 @@ struct Frame {
     std::optional<Box> box;
     Surface surface;
     Points points;
+    std::vector<Solid> solids;
     std::vector<Scalar> scalars;   ///< what only the solver knows: energies, pressures, residuals
 
     const Scalar* find_scalar(std::string_view name) const;

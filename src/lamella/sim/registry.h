@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lamella/core/device.h"
 #include "lamella/film/problem.h"
 #include "lamella/sim/node.h"
 #include "lamella/sim/options.h"
@@ -36,6 +37,7 @@ struct SolverInput {
     std::function<NumberTable(const std::string& file)> read_table;
     Node options;             ///< the solver's own table; an empty table where the scene has none
     std::shared_ptr<const film::Problem> films = nullptr;  ///< of a film solver; empty for others
+    Device device = Device::kCpu;
 };
 
 struct SolverEntry {
@@ -43,6 +45,7 @@ struct SolverEntry {
     std::string summary;
     std::string time_unit = "s";
     bool films = false;  ///< starts from the film tables of a scene (SolverInput::films)
+    bool cuda = false;   ///< can compute on a GPU
     bool stirring = false;  ///< uses those that stir the liquid of a film: [[vortex]], [[solid]]
     std::function<std::unique_ptr<Solver>(const SolverInput&)> create;  ///< checks the options, does no work
     std::function<std::vector<OptionInfo>()> describe;

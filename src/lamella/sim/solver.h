@@ -60,6 +60,9 @@ public:
     /// How far the run is on its way to its own end conditions, 0 to 1, or nothing: for the progress display.
     virtual std::optional<double> progress() const { return std::nullopt; }
 
+    /// How many times as many frames as asked for are due now, because much happens: 15 while a film bursts.
+    virtual double slow_motion() const { return 1.0; }
+
     /// Everything that can be seen now. `mark` true: displacements 'since the last frame' count from here.
     virtual Frame frame() const = 0;
     virtual void mark_frame() {}

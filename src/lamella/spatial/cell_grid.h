@@ -7,6 +7,7 @@
 
 #include "lamella/core/aligned.h"
 #include "lamella/core/vec.h"
+#include "lamella/spatial/cell_layout.h"
 #include "lamella/spatial/periodic_box.h"
 
 namespace lamella::spatial {
@@ -28,41 +29,12 @@ public:
     /// lie within `reach` of `center` on each axis.
     template <class Visit>
     void for_each_range(const Vec<D>& center, double reach, Visit&& visit) const {
-        std::array<CellRange, D> ranges;
-        for (std::size_t k = 0; k < D; ++k) ranges[k] = range(k, center[k], reach);
-        if constexpr (D == 2) {
-            for (std::size_t y = 0; y < ranges[1].count; ++y) visit_row(ranges[0], cell(ranges[1], 1, y), visit);
-        } else {
-            for (std::size_t z = 0; z < ranges[2].count; ++z)
-                for (std::size_t y = 0; y < ranges[1].count; ++y)
-                    visit_row(ranges[0], cell(ranges[2], 2, z) * cells_[1] + cell(ranges[1], 1, y), visit);
-        }
+        layout_.for_each_run(center, reach,
+                             [&](std::size_t first, std::size_t end) { visit(start_[first], start_[end]); });
     }
 
 private:
-    struct CellRange {
-        std::size_t first, count;  // cells first, first + 1, ... (wrapped around on periodic axes)
-    };
-
-    CellRange range(std::size_t axis, double center, double reach) const;
-    std::size_t cell_of(std::size_t axis, double x) const;
-    std::size_t cell(const CellRange& r, std::size_t axis, std::size_t i) const {
-        const std::size_t c = r.first + i;
-        return c < cells_[axis] ? c : c - cells_[axis];
-    }
-    template <class Visit>
-    void visit_row(const CellRange& x, std::size_t row, Visit&& visit) const {
-        const std::size_t base = row * cells_[0];
-        const std::size_t end = x.first + x.count;
-        const std::size_t straight = end < cells_[0] ? end : cells_[0];
-        visit(start_[base + x.first], start_[base + straight]);
-        if (end > cells_[0]) visit(start_[base], start_[base + end - cells_[0]]);
-    }
-
-    PeriodicBox<D> box_;
-    std::array<std::size_t, D> cells_;
-    Vec<D> cells_per_length_;
-    Vec<D> inverse_lengths_;  // 0 on axes with walls
+    CellLayout<D> layout_;
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> start_;  // of each cell in order_, and the end
 };

@@ -76,35 +76,12 @@ private:
 
     template <class Found>
     void visit_images(const Vec<D>& center, std::size_t i, std::size_t j, double limit, Found&& found) const {
-        std::array<int, D> low{};
-        std::array<int, D> high{};
+        // A ball meets its own image only when it spans the box; the foam ends before that.
+        if (j == i) return;
         Vec<D> separation;
-        for (std::size_t k = 0; k < D; ++k) {
-            separation[k] = center[k] - balls_.position[k][j];
-            if (!box_.periodic[k]) continue;
-            low[k] = static_cast<int>(std::ceil((separation[k] - limit) * inverse_[k]));
-            high[k] = static_cast<int>(std::floor((separation[k] + limit) * inverse_[k]));
-        }
-        std::array<int, D> m = low;
-        for (std::size_t k = 0; k < D; ++k)
-            if (low[k] > high[k]) return;
-        while (true) {
-            double squared = 0.0;
-            std::array<std::int8_t, D> image{};
-            for (std::size_t k = 0; k < D; ++k) {
-                const double s = separation[k] - box_.lengths[k] * m[k];
-                squared += s * s;
-                image[k] = static_cast<std::int8_t>(m[k]);
-            }
-            // A ball meets its own image only when it spans the box; the foam ends before that.
-            if (squared < limit * limit && j != i) found(j, image);
-            std::size_t k = 0;
-            while (k < D && ++m[k] > high[k]) {
-                m[k] = low[k];
-                ++k;
-            }
-            if (k == D) return;
-        }
+        for (std::size_t k = 0; k < D; ++k) separation[k] = center[k] - balls_.position[k][j];
+        for_each_image<D>(box_, inverse_, separation, limit,
+                          [&](const std::array<std::int8_t, D>& image) { found(j, image); });
     }
 
     const PeriodicBox<D>& box_;

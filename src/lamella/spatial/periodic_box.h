@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 
 #include "lamella/core/host_device.h"
 #include "lamella/core/vec.h"
@@ -16,19 +15,19 @@ struct PeriodicBox {
 
     /// 1/L on periodic axes and 0 on the others, so that separation - L * nearest(separation * inverse) is the
     /// nearest image on either kind.
-    Vec<D> inverse_lengths() const {
+    LAMELLA_HOST_DEVICE Vec<D> inverse_lengths() const {
         Vec<D> inverse;
         for (std::size_t k = 0; k < D; ++k) inverse[k] = periodic[k] ? 1.0 / lengths[k] : 0.0;
         return inverse;
     }
-    double volume() const {
+    LAMELLA_HOST_DEVICE double volume() const {
         double product = 1.0;
         for (std::size_t k = 0; k < D; ++k) product *= lengths[k];
         return product;
     }
-    double shortest_edge() const {
+    LAMELLA_HOST_DEVICE double shortest_edge() const {
         double shortest = lengths[0];
-        for (std::size_t k = 1; k < D; ++k) shortest = std::fmin(shortest, lengths[k]);
+        for (std::size_t k = 1; k < D; ++k) shortest = lengths[k] < shortest ? lengths[k] : shortest;
         return shortest;
     }
 };

@@ -3,6 +3,7 @@
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/spatial/bvh.h"
+#include "lamella/spatial/detail/vortex_gather.h"
 #include "lamella/spatial/detail/vortex_tree.h"
 
 #include <fmt/format.h>
@@ -127,6 +128,21 @@ SumColumns sum_directly(const std::vector<Vec3>& targets,
     return sums;
 }
 
+SumColumns sum_on_device(Device device,
+                         const std::vector<Vec3>& targets,
+                         const std::vector<Vec3>& centers,
+                         const std::vector<Vec3>& strengths,
+                         const PairLaw& law) {
+    std::vector<detail::GatherSource> sources(centers.size());
+    for (std::size_t i = 0; i < sources.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k) {
+            sources[i].x[k] = centers[i][k];
+            sources[i].g[k] = strengths[i][k];
+        }
+    return device == Device::kCuda ? detail::gather_on_gpu(targets, sources, law)
+                                   : detail::gather_on_twin(targets, sources, law);
+}
+
 /// The tree costs about as much per target as so many pairs, measured on spheres with delta of 1.5 spacings.
 bool tree_is_faster(std::size_t targets, std::size_t sources, const ClusterRule& rule, bool single) {
     const double pairs = (single ? 350.0 : 250.0) * static_cast<double>(rule.order * rule.order);
@@ -163,13 +179,16 @@ VortexField vortex_sum(std::span<const Vec3> targets,
     const bool single = options.precision == VortexSumOptions::Precision::kSingle && scale.spread <= kWidestSingle;
     const PairLaw law{options.kernel, with_potential, single};
     const ClusterRule rule = detail::cluster_rule(options.tolerance);
+    const bool on_device = options.device != Device::kCpu && options.method != Method::kTree;
     const bool tree = options.method == Method::kTree ||
-                      (options.method == Method::kAuto && tree_is_faster(targets.size(), centers.size(), rule, single));
+                      (!on_device && options.method == Method::kAuto && tree_is_faster(targets.size(), centers.size(), rule, single));
     const bool same = targets.data() == centers.data() && targets.size() == centers.size();
     const std::vector<Vec3> sources = scaled_points(centers, scale);
     const std::vector<Vec3> points = same ? std::vector<Vec3>{} : scaled_points(targets, scale);
     const std::vector<Vec3>& wanted = same ? sources : points;
     const std::vector<Vec3> weights = scaled_strengths(strengths, scale);
+    if (on_device)
+        return with_units(sum_on_device(options.device, wanted, sources, weights, law), scale, with_potential);
     const SumColumns sums = tree ? detail::sum_by_clusters(wanted, sources, weights, same, law, rule)
                                  : sum_directly(wanted, sources, weights, law);
     return with_units(sums, scale, with_potential);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lamella/core/device.h"
 #include "lamella/core/vec.h"
 
 #include <span>
@@ -32,6 +33,7 @@ struct VortexSumOptions {
     double delta = 0.0;  ///< regularization length [m], > 0
     Method method = Method::kAuto;
     Precision precision = Precision::kDouble;
+    Device device = Device::kCpu;  ///< kCuda: every pair on the GPU, whatever the method, but kTree
     double tolerance =
         1e-5;  ///< of the tree, in [1e-8, 1e-1]: largest error of the velocity over the largest |velocity|
 };
@@ -46,13 +48,14 @@ struct VortexField {
 ///   u(x) = 1/(4 pi) sum_g G_g x (x - c_g) K(|x - c_g|),   A(x) = 1/(4 pi) sum_g G_g psi(|x - c_g|).
 ///
 /// An element at a target adds nothing to its velocity and G psi(0) / (4 pi) to its potential. The same input gives the
-/// same bits on any number of threads; another instruction set may give other last bits.
+/// same bits on any number of threads; another instruction set or a GPU may give other last bits.
 ///
 /// @param targets    points where the field is wanted [m]; the same memory as `centers` saves a second tree
 /// @param centers    #S centers c_g of the elements [m]
 /// @param strengths  #S strengths G_g, area times sheet strength [m^3/s]
 /// @throws InputError  delta or tolerance out of range, lengths that differ, a value that is not finite (named by its
 ///                     index), or points that spread over more than 1e15 delta
+/// @throws IoError     the GPU fails
 VortexField vortex_sum(std::span<const Vec3> targets,
                        std::span<const Vec3> centers,
                        std::span<const Vec3> strengths,

@@ -130,7 +130,9 @@ TEST(Foam, RunsDownToItsLastBubbles) {
     // Few bubbles in a small box touch each other through several periodic images.
     Options o = coarsening(2, 60, 0.9);
     o.end_count = 2;
-    auto solver = start_solver<2>(o);
+    // Some seeds come to a small bubble that is squeezed onto the very center of a large one, where the push has no
+    // direction: steps of 1e-5, as it should.
+    auto solver = start_solver<2>(o, {}, 6);
     for (int step = 0; step < 200'000 && !solver->stop_reason(); ++step) solver->advance(1e9);
     ASSERT_TRUE(solver->stop_reason().has_value());
     EXPECT_LE(solver->frame().points.size(), 12U);

@@ -77,7 +77,8 @@ TEST(MergeCrowds, KeepsAllThatParticlesHave) {
     for (std::size_t t = 0; t < s.triangles(); ++t) EXPECT_EQ(bins[t + 1] - bins[t], 8U);
     EXPECT_NEAR(std::accumulate(particles.area.begin(), particles.area.end(), 0.0) / area, 1.0, 1e-12);
     EXPECT_NEAR(std::accumulate(particles.volume.begin(), particles.volume.end(), 0.0), volume, 1e-12 * volume);
-    EXPECT_NEAR(std::accumulate(particles.circulation.begin(), particles.circulation.end(), 0.0), circulation, 1e-12 * volume);
+    EXPECT_NEAR(std::accumulate(particles.circulation.begin(), particles.circulation.end(), 0.0), circulation,
+                1e-12 * volume);
     for (const auto& place : particles.place) EXPECT_NEAR(place[0] + place[1] + place[2], 1.0, 1e-12);
 }
 

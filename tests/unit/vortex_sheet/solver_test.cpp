@@ -54,6 +54,8 @@ region = 0
 edge_length = 0.4
 [time]
 end = 1.0
+[vortex_sheet]
+popped_vorticity = "free"
 )";
 
 void advance(VortexSheetSolver& solver, double until, std::int64_t stop_after = 1'000'000) {
@@ -68,6 +70,7 @@ TEST(VortexSheetSolver, GivesTheSameBitsOnOneAndTwoThreads) {
         auto solver = solver_of(kBusy);
         solver->start({});
         advance(*solver, 1.0);
+        EXPECT_FALSE(solver->loose_sheets().empty());  // they take part
         meshes.push_back(solver->mesh());
         circulations.push_back(solver->circulation());
     }
@@ -79,7 +82,8 @@ TEST(VortexSheetSolver, GoesOnFromACheckpointWithTheSameBits) {
     auto whole = solver_of(kBusy);
     whole->start({});
     advance(*whole, 1.0);
-    for (const std::int64_t stop : {1, 3, 5, 8}) {
+    const auto last = whole->step() - 1;  // after the burst
+    for (const std::int64_t stop : {std::int64_t{1}, std::int64_t{3}, std::int64_t{5}, last}) {
         auto first = solver_of(kBusy);
         first->start({});
         advance(*first, 1.0, stop);
@@ -91,6 +95,7 @@ TEST(VortexSheetSolver, GoesOnFromACheckpointWithTheSameBits) {
         advance(*second, 1.0);
         EXPECT_EQ(second->mesh(), whole->mesh()) << "after " << stop << " steps";
         EXPECT_EQ(second->circulation(), whole->circulation());
+        EXPECT_EQ(second->loose_sheets().position, whole->loose_sheets().position);
         EXPECT_EQ(second->step(), whole->step());
     }
 }
@@ -111,6 +116,12 @@ TEST(VortexSheetSolver, RefusesACheckpointThatDoesNotFit) {
     refused([](Memory& m) { m.integers["wire_of"][0] = 7; });
     refused([](Memory& m) { m.integers["next_event"] = {99}; });
     refused([](Memory& m) { m.integers["inflations"] = {1'000'000'000}; });
+    refused([](Memory& m) { m.integers["loose_triangles"] = {-1}; });
+    refused([](Memory& m) { m.reals["loose_circulation"].push_back(0.0); });
+    refused([](Memory& m) {
+        m.integers["loose_triangles"] = {1};
+        m.integers["loose_corners"] = {0, 1, 99};
+    });
 }
 
 TEST(VortexSheetSolver, DoesWhatTheEventsSay) {
@@ -220,6 +231,14 @@ TEST(VortexSheetSolver, RefusesOptionsThatDoNotGoTogether) {
     options.compat.form = Form::kPoint;
     EXPECT_THROW(VortexSheetSolver(options, input), InputError);
     options.integrator = Integrator::kSymplecticEuler;
+    EXPECT_NO_THROW(VortexSheetSolver(options, input));
+    options.popped_vorticity = PoppedVorticity::kFree;
+    EXPECT_THROW(VortexSheetSolver(options, input), InputError);
+    options = {};
+    options.popped_vorticity = PoppedVorticity::kFree;
+    options.tension = Tension::kImplicit;
+    EXPECT_THROW(VortexSheetSolver(options, input), InputError);
+    options.tension = Tension::kAuto;
     EXPECT_NO_THROW(VortexSheetSolver(options, input));
 
     film::Problem inflating = sphere;

@@ -1,20 +1,19 @@
 // Solids in a film.
 
-#include "films.h"
-
 #include "lamella/solvers/vortex_particle/solids.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "films.h"
 #include <cmath>
 #include <numeric>
 
 namespace lamella::vortex_particle {
 namespace {
 
-/// A stick that starts suddenly makes the flow of a dipole around it, u = U a^2 / r^2 (2 (e . n) n - e), n = r / |r|, before
-/// anything is shed; the walls are ten radii away and change it by a hundredth.
+/// A stick that starts suddenly makes the flow of a dipole around it, u = U a^2 / r^2 (2 (e . n) n - e), n = r / |r|,
+/// before anything is shed; the walls are ten radii away and change it by a hundredth.
 TEST(Stick, StartsWithPotentialFlowAroundIt) {
     std::vector<double> error;
     for (const double edge : {0.1, 0.05}) {
@@ -32,7 +31,8 @@ edge_length = {}
 [vortex_particle]
 incompressible = true
 largest_step = 0.001
-)", edge));
+)",
+                                            edge));
         solver->start({});
         run_until(*solver, 0.002);
         const Surface& s = solver->surface();
@@ -92,7 +92,9 @@ constexpr double kFilmMass = 1000.0 * 4e-7;  // per area [kg/m^2]
 constexpr double kPi = 3.14159265358979323846;
 
 /// A disk of radius 0.4 m in a film at rest, ten radii from its walls.
-std::unique_ptr<VortexParticleSolver> disk_in_still_film(double edge, const std::string& solid, const std::string& vortex = "") {
+std::unique_ptr<VortexParticleSolver> disk_in_still_film(double edge,
+                                                         const std::string& solid,
+                                                         const std::string& vortex = "") {
     return solver_of(fmt::format(R"(
 [material]
 kinematic_viscosity = 0.0
@@ -111,7 +113,8 @@ edge_length = {}
 incompressible = true
 particles_per_triangle = 3
 largest_step = 0.001
-)", solid, vortex, edge));
+)",
+                                 solid, vortex, edge));
 }
 
 /// The film that a disk covers, and as much again that has to get around it, take up the momentum 2 pi a^2 rho eta U.

@@ -1,9 +1,8 @@
 // Film that streams through its frame.
 
-#include "films.h"
-
 #include <gtest/gtest.h>
 
+#include "films.h"
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -1,8 +1,8 @@
 // What takes minutes: where the fate of two Taylor vortices turns, on two meshes; leapfrog [method sheet 12.2, 12.3].
 
-#include "swirls.h"
-
 #include <gtest/gtest.h>
+
+#include "swirls.h"
 
 namespace lamella::vortex_particle {
 namespace {

@@ -12,13 +12,12 @@ namespace {
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 
-/// An icosahedron whose triangles are cut in four: 42 vertices of radius 1, 80 triangles.
 struct Polyhedron {
     std::vector<Vec3> position;
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-Polyhedron round_polyhedron() {
+Polyhedron icosahedron() {
     const double g = (1.0 + std::sqrt(5.0)) / 2.0;
     Polyhedron ball;
     for (const Vec3& p : {Vec3{{-1, g, 0}},
@@ -34,10 +33,14 @@ Polyhedron round_polyhedron() {
                           {{-g, 0, -1}},
                           {{-g, 0, 1}}})
         ball.position.push_back(p / norm(p));
-    constexpr std::array<std::array<std::uint32_t, 3>, 20> kFaces{
-        {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-         {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-         {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
+    ball.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+    return ball;
+}
+
+/// Each triangle in four, with the new vertices on the sphere.
+void cut(Polyhedron& ball) {
     std::map<std::array<std::uint32_t, 2>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
         const auto [it, fresh] =
@@ -48,28 +51,43 @@ Polyhedron round_polyhedron() {
         }
         return it->second;
     };
-    for (const auto& [a, b, c] : kFaces) {
+    std::vector<std::array<std::uint32_t, 3>> finer;
+    for (const auto& [a, b, c] : ball.triangles) {
         const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-        for (const auto& t : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
-            ball.triangles.push_back(t);
+        for (const auto& t : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}) finer.push_back(t);
     }
+    ball.triangles = std::move(finer);
+}
+
+/// Of radius 1: 80 triangles after one cut, 1280 after three.
+Polyhedron round_polyhedron(int cuts) {
+    Polyhedron ball = icosahedron();
+    for (int i = 0; i < cuts; ++i) cut(ball);
     return ball;
 }
 
-DrawnPart balls(const sim::Points& points) {
-    DrawnPart part;
-    part.name = points.radius.empty() ? "points" : "bubbles";
-    const Polyhedron ball = points.radius.empty() ? Polyhedron{{Vec3{}}, {}} : round_polyhedron();
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-        const auto first = static_cast<std::uint32_t>(part.position.size());
-        const double radius = points.radius.empty() ? 0.0 : points.radius[i];
-        for (const Vec3& p : ball.position) {
-            part.source.push_back(i);
-            part.position.push_back(points.position[i] + radius * p);
-            if (!points.radius.empty()) part.normal.push_back(p);
-        }
-        for (const auto& [a, b, c] : ball.triangles) part.triangles.push_back({a + first, b + first, c + first});
+void add_ball(DrawnPart& part, const Polyhedron& ball, std::uint32_t source, const Vec3& center, double radius) {
+    const auto first = static_cast<std::uint32_t>(part.position.size());
+    for (const Vec3& p : ball.position) {
+        part.source.push_back(source);
+        part.position.push_back(center + radius * p);
+        if (radius > 0.0) part.normal.push_back(p);
     }
+    for (const auto& [a, b, c] : ball.triangles) part.triangles.push_back({a + first, b + first, c + first});
+}
+
+DrawnPart balls(const sim::Points& points) {
+    DrawnPart part{.name = points.radius.empty() ? "points" : "bubbles", .fields = points.fields};
+    const Polyhedron ball = points.radius.empty() ? Polyhedron{{Vec3{}}, {}} : round_polyhedron(1);
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+        add_ball(part, ball, i, points.position[i], points.radius.empty() ? 0.0 : points.radius[i]);
+    return part;
+}
+
+DrawnPart drawn_solids(const std::vector<sim::Solid>& solids) {
+    DrawnPart part{.name = "solids"};
+    const Polyhedron ball = round_polyhedron(3);
+    for (std::uint32_t i = 0; i < solids.size(); ++i) add_ball(part, ball, i, solids[i].center, solids[i].radius);
     return part;
 }
 
@@ -85,6 +103,7 @@ std::vector<DrawnPart> drawn_parts(const sim::Frame& frame) {
         DrawnPart part;
         part.name = fmt::format("film_{}_{}", regions[0], regions[1]);
         part.regions = regions;
+        part.fields = s.vertex_fields;
         for (const std::size_t f : faces) {
             std::array<std::uint32_t, 3> triangle{};
             for (std::size_t k = 0; k < 3; ++k) {
@@ -102,6 +121,7 @@ std::vector<DrawnPart> drawn_parts(const sim::Frame& frame) {
         parts.push_back(std::move(part));
     }
     if (!frame.points.empty()) parts.push_back(balls(frame.points));
+    if (!frame.solids.empty()) parts.push_back(drawn_solids(frame.solids));
     return parts;
 }
 

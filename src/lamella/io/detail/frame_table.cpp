@@ -75,6 +75,14 @@ void check_surface(const sim::Surface& surface) {
                                              region, described));
 }
 
+void check_solids(const std::vector<sim::Solid>& solids) {
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+        const sim::Solid& solid = solids[i];
+        if (!std::isfinite(squared_norm(solid.center)) || !(solid.radius > 0.0) || !std::isfinite(solid.radius))
+            throw InputError(fmt::format("solid {} has no place or no size", i));
+    }
+}
+
 TableColumn column_of(const sim::Field& field) {
     return {.name = field.name, .unit = field.unit, .components = field.components, .integer = field.integer};
 }
@@ -88,9 +96,11 @@ void check_frame(const sim::Frame& frame) {
         throw InputError(fmt::format("{} radii for {} points", points.radius.size(), points.size()));
     }
     check_fields(points.fields, points.size(), {"radius"});
+    check_solids(frame.solids);
     // What every frame file says about the frame itself.
-    std::set<std::string> used{"TimeValue",  "step",          "solver",      "time_unit",   "length_unit",
-                               "box_origin", "box_dimension", "box_lengths", "box_periodic"};
+    std::set<std::string> used{"TimeValue",    "step",       "solver",        "time_unit",
+                               "length_unit",  "box_origin", "box_dimension", "box_lengths",
+                               "box_periodic", kSolidCenter, kSolidRadius};
     for (const sim::Field& field : frame.surface.region_fields) used.insert(kRegionPrefix + field.name);
     for (const sim::Scalar& scalar : frame.scalars) {
         check_name(scalar.name, scalar.unit, used);

@@ -11,11 +11,15 @@ namespace lamella::io::detail {
 
 /// Refuses a frame that no file could hold: arrays whose lengths do not fit together, names that are empty, used
 /// twice or not printable, integer fields with other values than whole numbers up to 2^53, triangles that refer
-/// to missing vertices. @throws InputError  naming the field
+/// to missing vertices, solids without a place or a size. @throws InputError  naming the field
 void check_frame(const sim::Frame& frame);
 
 /// Before the name of a region's field, where it stands among other data: region_pressure.
 inline const std::string kRegionPrefix = "region_";
+
+/// The solids of a frame, where it has any.
+inline const std::string kSolidCenter = "solid_center";
+inline const std::string kSolidRadius = "solid_radius";
 
 /// A column of the one table that a file with a single list of points has: surface vertices first, then points.
 /// Rows that the column says nothing about hold NaN, or -1 in an integer column.

@@ -38,6 +38,10 @@ std::vector<NamedField> find_fields(const sim::Frame& frame, const std::string& 
                                  near ? fmt::format("; did you mean {}?", *near) : "", list.empty() ? "none" : list));
 }
 
+std::array<std::int32_t, 2> regions_beside(const sim::Surface& surface, std::size_t triangle) {
+    return triangle < surface.regions.size() ? surface.regions[triangle] : std::array<std::int32_t, 2>{};
+}
+
 sim::Field radius_field(const sim::Points& points) { return {"radius", points.length_unit, 1, false, points.radius}; }
 
 std::vector<std::array<double, 3>> corner_values(const FilmPatches& patches, const NamedField& field) {

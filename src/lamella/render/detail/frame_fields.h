@@ -22,6 +22,9 @@ std::vector<NamedField> find_fields(const sim::Frame& frame, const std::string& 
 /// The scalar field `thickness`, of the films or else of the points.
 std::optional<NamedField> thickness_field(const sim::Frame& frame);
 
+/// The regions beside a triangle; the outside twice where a frame says nothing of them.
+std::array<std::int32_t, 2> regions_beside(const sim::Surface& surface, std::size_t triangle);
+
 /// The radii of balls as a field.
 sim::Field radius_field(const sim::Points& points);
 

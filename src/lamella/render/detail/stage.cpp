@@ -24,11 +24,13 @@ using detail::radius_field;
 using detail::Stage;
 using detail::thickness_field;
 
-/// As many pieces per edge as make a few hundred thousand triangles.
-int pieces_for(std::size_t triangles) {
-    constexpr std::size_t kWanted = 240'000;
+/// As many pieces per edge as make a few hundred thousand triangles, or enough to show every particle of the films.
+int pieces_for(std::size_t triangles, std::size_t particles) {
+    constexpr std::size_t kWanted = 240'000, kMost = 2'000'000;
+    const int finest = particles > 0 ? 24 : 12;
+    const std::size_t wanted = std::clamp(4 * particles, kWanted, kMost);
     int pieces = 1;
-    while (pieces < 12 && triangles * static_cast<std::size_t>((pieces + 1) * (pieces + 1)) <= kWanted) ++pieces;
+    while (pieces < finest && triangles * static_cast<std::size_t>((pieces + 1) * (pieces + 1)) <= wanted) ++pieces;
     return pieces;
 }
 
@@ -105,6 +107,17 @@ void add_balls(const sim::Frame& frame, const PictureOptions& options, Stage* st
     }
 }
 
+/// Dark and glossy, so that they are told from bubbles and hide no colors.
+void add_solids(const std::vector<sim::Solid>& solids, Stage* stage, detail::RayGeometry* geometry) {
+    constexpr optics::Rgb kGraphite{{0.10, 0.10, 0.11}};
+    for (const sim::Solid& solid : solids) {
+        const Vec3 p = (solid.center - stage->bounds.center) / stage->bounds.radius;
+        geometry->balls.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]),
+                                   static_cast<float>(solid.radius / stage->bounds.radius)});
+        stage->ball_color.push_back(kGraphite);
+    }
+}
+
 /// What each corner of the films shows: the field, or the thickness [m].
 std::vector<std::array<double, 3>> film_values(const sim::Frame& frame,
                                                const FilmPatches& patches,
@@ -124,6 +137,27 @@ std::vector<std::array<double, 3>> film_values(const sim::Frame& frame,
     return {patches.triangles.size(), {options.thickness, options.thickness, options.thickness}};
 }
 
+/// Of any point of the fine films, the patch it is part of.
+std::size_t patch_of(const Stage& stage, const FilmPatches& patches, std::size_t point) {
+    return point / (stage.films.position.size() / patches.triangles.size());
+}
+
+/// What particles carry, at their own resolution; where there are none nearby, films show what their corners say.
+void take_from_particles(const sim::Surface& surface,
+                         const FilmPatches& patches,
+                         const detail::FilmParticles& particles,
+                         Stage* stage) {
+    const detail::ParticleAverage average(particles, detail::particle_spacing(surface, particles.position.size()));
+    parallel_for(stage->films.position.size(), [&](std::size_t i) {
+        const auto& p = stage->films.position[i];
+        Vec3 place = stage->bounds.center;
+        for (std::size_t k = 0; k < 3; ++k) place[k] += stage->bounds.radius * static_cast<double>(p[k]);
+        const std::uint32_t triangle = patches.source[patch_of(*stage, patches, i)];
+        const auto value = average.at(place, detail::regions_beside(surface, triangle));
+        if (value) stage->films.value[i] = static_cast<float>(*value);
+    });
+}
+
 /// Thicknesses that vary within a triangle: from particles, or assumed.
 void refine_thickness(const sim::Frame& frame,
                       const FilmPatches& patches,
@@ -132,26 +166,18 @@ void refine_thickness(const sim::Frame& frame,
     if (stage->films_show_field) return;
     stage->thickness_origin = "given";
     if (options.thickness > 0.0) return;
-    const auto field = thickness_field(frame);
-    stage->thickness_origin = "frame";
-    if (field && field->place != NamedField::kPoints) return;
-    stage->thickness_origin =
-        field ? "particles" : "assumed: films that have drained for a while, 0.2 um above to 0.8 um below";
-    const auto place = [&](std::size_t i) {
-        const auto& p = stage->films.position[i];
-        return Vec3{{static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])}};
-    };
-    if (field) {
-        std::vector<Vec3> points;
-        for (const Vec3& p : frame.points.position) points.push_back((p - stage->bounds.center) / stage->bounds.radius);
-        const detail::ParticleAverage average(points, field->field->values);
-        parallel_for(stage->films.position.size(),
-                     [&](std::size_t i) { stage->films.value[i] = static_cast<float>(average.at(place(i))); });
-        return;
+    if (const auto particles = detail::thickness_particles(frame)) {
+        stage->thickness_origin = "particles";
+        return take_from_particles(frame.surface, patches, *particles, stage);
     }
-    const std::size_t per_triangle = stage->films.position.size() / patches.triangles.size();
+    stage->thickness_origin = "frame";
+    if (thickness_field(frame)) return;
+    stage->thickness_origin = "assumed: films that have drained for a while, 0.2 um above to 0.8 um below";
     parallel_for(stage->films.position.size(), [&](std::size_t i) {
-        stage->films.value[i] = static_cast<float>(detail::assumed_thickness(place(i), patches.film[i / per_triangle]));
+        const auto& p = stage->films.position[i];
+        const Vec3 place{{static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])}};
+        stage->films.value[i] =
+            static_cast<float>(detail::assumed_thickness(place, patches.film[patch_of(*stage, patches, i)]));
     });
 }
 
@@ -181,7 +207,8 @@ detail::Stage detail::make_stage(const sim::Frame& frame, const PictureOptions& 
     if (!frame.surface.triangles.empty()) {
         FilmPatches patches = film_patches(frame.surface);
         scale_into_ball(patches, stage.bounds);
-        const int pieces = pieces_for(patches.triangles.size());
+        const auto particles = thickness_particles(frame);
+        const int pieces = pieces_for(patches.triangles.size(), particles ? particles->position.size() : 0);
         stage.films = refine_films(patches, film_values(frame, patches, options, &stage), pieces);
         refine_thickness(frame, patches, options, &stage);
         geometry.film_position = stage.films.position;
@@ -189,6 +216,7 @@ detail::Stage detail::make_stage(const sim::Frame& frame, const PictureOptions& 
         add_threads(patches, pieces, options.border_width, &geometry);
     }
     add_balls(frame, options, &stage, &geometry);
+    add_solids(frame.solids, &stage, &geometry);
     if (options.ground) stage.ground = Ground{lowest_point(geometry) - 0.004, {}};
     if (!options.field.empty() && !stage.scale) field_scale(frame, options.field);  // says what fields there are
     stage.rays = std::make_unique<RayScene>(std::move(geometry));

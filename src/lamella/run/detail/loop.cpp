@@ -101,7 +101,7 @@ void Loop::run_to_end() {
     while (true) {
         const double time = solver_->time();
         const std::optional<std::string> reason = end_reason();
-        const OutputTime due = started() ? schedule_.next(state_.output_time) : OutputTime{time, true};
+        const OutputTime due = started() ? next_output() : OutputTime{time, true};
         if (is_after(due.time, state_.output_time) && !is_after(due.time, time)) {
             write_output({due.time, due.frame || reason});
         } else if (reason && (is_after(time, state_.output_time) || solver_->step() > state_.output_step)) {
@@ -114,9 +114,20 @@ void Loop::run_to_end() {
         }
         if (checkpoint_is_due()) checkpoint();
         if (settings_.stop_signal() != 0) throw Interrupted();
-        advance(schedule_.next(state_.output_time).time);
+        advance(next_output().time);
         report_progress();
     }
+}
+
+/// Frames that a slow motion would have had before it began are not made up for.
+OutputTime Loop::next_output() const {
+    const OutputTime regular = schedule_.next(state_.output_time);
+    const double slow_motion = solver_->slow_motion();
+    if (slow_motion <= 1.0) return regular;
+    constexpr double kJustBefore = 1.0 - 4e-9;
+    const OutputTime more =
+        schedule_.next(std::max(state_.output_time, kJustBefore * solver_->time()), slow_motion);
+    return is_after(regular.time, more.time) ? more : regular;
 }
 
 void Loop::start() {

@@ -37,6 +37,7 @@ public:
 private:
     void run_until_stopped();
     void run_to_end();
+    OutputTime next_output() const;
     void start();
     bool started() const { return state_.output_time >= 0.0; }
     std::optional<std::string> end_reason() const;

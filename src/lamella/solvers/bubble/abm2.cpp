@@ -48,6 +48,8 @@ public:
     /// The history stays, as published: the push of a bubble that vanished leaves it within two steps.
     void foam_changed() override {}
     double next_step() const override { return next_step_; }
+    IntegratorState state() const override { return {.next_step = next_step_}; }
+    void set_state(const IntegratorState& state) override { next_step_ = state.next_step; }
 
     void save(sim::StateWriter& out, const std::vector<std::uint32_t>& order) const override;
     void load(sim::StateReader& in, System<D>& system) override;
@@ -181,8 +183,7 @@ Step Abm2<D>::step(System<D>& system, double longest) {
         }
         ++done.rejections;
         if (next_step_ < 1e-12)
-            throw NumericalError(
-                fmt::format("the time step fell below 1e-12 (error {} at tolerance {})", done.error, tolerance));
+            throw NumericalError(step_underflow(done.error, tolerance));
     }
 
     stage_moved(system, corrected_);

@@ -10,6 +10,7 @@
 #include "lamella/core/fixed_sum.h"
 #include "lamella/core/parallel.h"
 #include "lamella/solvers/bubble/census.h"
+#include "lamella/solvers/bubble/detail/device_runner.h"
 #include "lamella/solvers/bubble/relax.h"
 #include "lamella/solvers/bubble/removal.h"
 #include "lamella/solvers/bubble/start.h"
@@ -90,10 +91,16 @@ template <int D>
 BubbleSolver<D>::BubbleSolver(const Options& options, const sim::SolverInput& input)
     : options_(options), input_(input) {
     check_together(options, input.options);
+    if (input.device != Device::kCpu)
+        if (const std::string what = detail::not_on_device(options); !what.empty())
+            throw InputError(input.options.where, what + " does not run on a GPU; use --device cpu");
     system_ = std::make_unique<System<D>>(options_, domain_);
     time_rate_ = options.time_unit == TimeUnit::kScaled ? system_->model.scaled_time_rate() : 1.0;
     make_integrator();
 }
+
+template <int D>
+BubbleSolver<D>::~BubbleSolver() = default;
 
 template <int D>
 void BubbleSolver<D>::make_integrator() {
@@ -126,6 +133,62 @@ void BubbleSolver<D>::start(const sim::StartContext& context) {
     s.rebuild();
     make_integrator();
     integrator_->begin(s);
+    take_to_device();
+}
+
+template <int D>
+void BubbleSolver<D>::take_to_device() {
+    if (input_.device == Device::kCpu) return;
+    device_ = input_.device == Device::kCuda
+                  ? detail::make_cuda_runner<D>(options_)
+                  : detail::make_twin_runner<D>(options_, HostMachine::Order::kShuffled);
+    device_->upload(system_->foam, system_->model, clock_, integrator_->state());
+    observed_ = true;
+}
+
+template <int D>
+void BubbleSolver<D>::observe() const {
+    if (observed_) return;
+    device_->download(system_->foam);
+    integrator_->set_state(device_->integrator_state());
+    system_->rebuild();
+    observed_ = true;
+}
+
+template <int D>
+std::size_t BubbleSolver<D>::live() const {
+    return device_ ? device_->control().live : system_->foam.live;
+}
+
+template <int D>
+double BubbleSolver<D>::largest_size() const {
+    const Foam<D>& foam = system_->foam;
+    return device_ ? device_->control().max_size
+                   : parallel_max(foam.slots, 0.0, [&](std::size_t i) { return foam.size[i]; });
+}
+
+/// Many steps at once, as far as nothing of the host's is due.
+template <int D>
+sim::StepReport BubbleSolver<D>::advance_on_device(double time_limit) {
+    constexpr std::int64_t kStepsPerVisit = 64;
+    const Clock before = clock_;
+    device_->advance(time_limit, kStepsPerVisit);
+    observed_ = false;
+    const detail::Control& control = device_->control();
+    clock_ = control.clock;
+    for (const detail::VanishedBubble<D>& bubble : device_->take_vanished()) {
+        sim::Event event{.time = bubble.time, .kind = "remove", .position = {}, .detail = fmt::format("bubble {}", bubble.id)};
+        for (std::size_t k = 0; k < D; ++k) event.position[k] = bubble.position[k];
+        events_.push_back(std::move(event));
+    }
+    if (control.waiting == detail::Waiting::kUnderflow)
+        throw NumericalError(step_underflow(control.error, control.step_tolerance));
+    if (control.waiting == detail::Waiting::kNothing)
+        throw NumericalError(fmt::format("all {} bubbles would vanish in one step", control.live));
+    return {.step = clock_.time - before.time,
+            .evaluations = clock_.evaluations - before.evaluations,
+            .iterations = 0,
+            .residual = control.error};
 }
 
 /// The state from which times, paths, displacements and means of the start count.
@@ -152,25 +215,16 @@ void BubbleSolver<D>::remember_start() {
 
 template <int D>
 sim::StepReport BubbleSolver<D>::advance(double time_limit) {
-    const double left = time_limit - time_;
-    double longest = left / time_rate_;
-    // Two equal steps rather than a long one and a sliver.
+    if (device_) return advance_on_device(time_limit);
     const double wanted = std::min(integrator_->next_step(), options_.integrator.max_step);
-    const bool lands = longest <= wanted;
-    if (!lands && longest < 2.0 * wanted) longest *= 0.5;
-
-    const Step step = integrator_->step(*system_, longest);
-    mechanical_time_ += step.clock;
-    const bool full = lands && step.time == longest;
-    time_ = full && step.clock == step.time ? time_limit : time_ + step.clock * time_rate_;
-    ++steps_;
-    evaluations_ += step.evaluations;
-    rejections_ += step.rejections;
+    const Landing landing = clock_.landing(time_limit, time_rate_, wanted);
+    const Step step = integrator_->step(*system_, landing.longest);
+    clock_.tick(step, landing, time_limit, time_rate_);
 
     std::vector<sim::Event> removed = remove_vanished(*system_, options_.compat.removal);
     if (!removed.empty()) integrator_->foam_changed();
     for (sim::Event& event : removed) {
-        event.time = time_;
+        event.time = clock_.time;
         events_.push_back(std::move(event));
     }
     return {.step = step.clock * time_rate_, .evaluations = step.evaluations, .iterations = 0, .residual = step.error};
@@ -178,11 +232,10 @@ sim::StepReport BubbleSolver<D>::advance(double time_limit) {
 
 template <int D>
 std::optional<std::string> BubbleSolver<D>::stop_reason() const {
-    const Foam<D>& foam = system_->foam;
-    if (foam.live <= static_cast<std::size_t>(options_.end_count))
-        return fmt::format("{} bubbles are left (bubble.end_count = {})", foam.live, options_.end_count);
-    const double largest = Shape<D>::radius(parallel_max(foam.slots, 0.0, [&](std::size_t i) { return foam.size[i]; }));
-    if (2.0 * largest >= foam.box.shortest_edge())
+    if (live() <= static_cast<std::size_t>(options_.end_count))
+        return fmt::format("{} bubbles are left (bubble.end_count = {})", live(), options_.end_count);
+    const double largest = Shape<D>::radius(largest_size());
+    if (2.0 * largest >= system_->foam.box.shortest_edge())
         return fmt::format("the largest bubble, of radius {:.4g}, spans the box", largest);
     return std::nullopt;
 }
@@ -196,8 +249,8 @@ std::optional<double> BubbleSolver<D>::progress() const {
     constexpr double kEarly = 0.6;
     const auto start = static_cast<double>(start_count_);
     if (!system_->model.exchanges_gas() || start <= options_.end_count) return std::nullopt;
-    const double tau = mechanical_time_ * system_->model.scaled_time_rate();
-    const double shrunk = start / static_cast<double>(system_->foam.live);
+    const double tau = clock_.mechanical_time * system_->model.scaled_time_rate();
+    const double shrunk = start / static_cast<double>(live());
     const double crossover = shrunk > 1.1 ? tau / (std::pow(shrunk, kDecay) - 1.0) : 2.5;
     const double end = crossover * (std::pow(start / options_.end_count, kDecay) - 1.0);
     return std::min(0.99, std::log1p(tau / kEarly) / std::log1p(end / kEarly));
@@ -210,7 +263,8 @@ std::vector<sim::Event> BubbleSolver<D>::take_events() {
 
 template <int D>
 void BubbleSolver<D>::mark_frame() {
-    system_->foam.marked = system_->foam.position;
+    if (device_) device_->mark_frame();
+    if (observed_) system_->foam.marked = system_->foam.position;
 }
 
 /// Slots of the live bubbles by id: what leaves the solver does not depend on how bubbles are stored.

@@ -5,11 +5,17 @@
 
 #include "lamella/sim/registry.h"
 #include "lamella/sim/solver.h"
+#include "lamella/solvers/bubble/clock.h"
 #include "lamella/solvers/bubble/integrator.h"
 #include "lamella/solvers/bubble/options.h"
 #include "lamella/solvers/bubble/system.h"
 
 namespace lamella::bubble {
+
+namespace detail {
+template <int D>
+class DeviceRunner;
+}
 
 /// The wet-foam bubble model with gas exchange in D dimensions [Lankinen20]: discs or balls that push each other
 /// apart, move against the liquid, exchange gas through the films between them and through the liquid, and vanish.
@@ -18,13 +24,14 @@ class BubbleSolver final : public sim::Solver {
 public:
     /// @throws InputError  options that do not go together
     BubbleSolver(const Options& options, const sim::SolverInput& input);
+    ~BubbleSolver() override;
 
     void start(const sim::StartContext& context) override;
     sim::StepReport advance(double time_limit) override;
 
-    double time() const override { return time_; }
+    double time() const override { return clock_.time; }
     std::string time_unit() const override { return "-"; }
-    std::int64_t step() const override { return steps_; }
+    std::int64_t step() const override { return clock_.steps; }
     std::optional<std::string> stop_reason() const override;
     std::optional<double> progress() const override;
 
@@ -37,12 +44,21 @@ public:
     void save(sim::StateWriter& out) const override;
     void load(sim::StateReader& in) override;
 
-    const System<D>& system() const { return *system_; }
+    const System<D>& system() const {
+        observe();
+        return *system_;
+    }
 
 private:
     std::vector<std::uint32_t> id_order() const;
     void remember_start();
     void make_integrator();
+    void take_to_device();
+    sim::StepReport advance_on_device(double time_limit);
+    /// Brings the foam up to date with the device, where that holds it.
+    void observe() const;
+    std::size_t live() const;
+    double largest_size() const;
 
     Options options_;
     sim::SolverInput input_;
@@ -51,11 +67,11 @@ private:
     std::unique_ptr<System<D>> system_;
     std::unique_ptr<Integrator<D>> integrator_;
 
-    double time_ = 0.0;
-    std::int64_t steps_ = 0;
-    std::int64_t evaluations_ = 0;
-    std::int64_t rejections_ = 0;
-    double mechanical_time_ = 0.0;
+    /// Takes the steps instead of the integrator; empty on the CPU. What leaves the solver is taken from system_ there too.
+    std::unique_ptr<detail::DeviceRunner<D>> device_;
+    mutable bool observed_ = true;  ///< system_ is up to date with it
+
+    Clock clock_;
     double start_gas_ = 0.0;     ///< sum of q at the start
     std::int64_t start_count_ = 0;
     std::vector<sim::Event> events_;

@@ -2,20 +2,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "lamella/sim/archive.h"
+#include "lamella/solvers/bubble/clock.h"
+#include "lamella/solvers/bubble/integrator_state.h"
 #include "lamella/solvers/bubble/system.h"
 
 namespace lamella::bubble {
-
-/// What one accepted step did.
-struct Step {
-    double time = 0.0;   ///< mechanical time by which the state advanced
-    double clock = 0.0;  ///< time by which the clock advances: the same, unless compat.clock asks for the published bug
-    double error = 0.0;  ///< its error estimate [length]
-    std::int64_t evaluations = 0;  ///< of the attempts that counted (an attempt whose lists were outgrown is repeated)
-    std::int64_t rejections = 0;
-};
 
 /// Advances a System by adaptive steps.
 template <int D>
@@ -32,9 +26,16 @@ public:
     /// The step that the next attempt would like to take.
     virtual double next_step() const = 0;
 
+    /// What is exchanged with a device that takes the steps instead. Only for rkc2: abm2 has a history as well.
+    virtual IntegratorState state() const = 0;
+    virtual void set_state(const IntegratorState& state) = 0;
+
     virtual void save(sim::StateWriter& out, const std::vector<std::uint32_t>& order) const = 0;
     virtual void load(sim::StateReader& in, System<D>& system) = 0;
 };
+
+/// What a NumericalError says when no step is small enough.
+std::string step_underflow(double error, double tolerance);
 
 template <int D>
 std::unique_ptr<Integrator<D>> make_rkc2(const Options& options, System<D>& system);

@@ -39,7 +39,7 @@ struct Model {
         return m;
     }
 
-    bool exchanges_gas() const { return exchange_rate > 0.0; }
+    LAMELLA_HOST_DEVICE bool exchanges_gas() const { return exchange_rate > 0.0; }
     /// tau = K t / <R_in>^2: scaled time per time.
     double scaled_time_rate() const { return exchange_rate / (input_mean_radius * input_mean_radius); }
 };

@@ -2,10 +2,16 @@
 
 #include <cmath>
 
-#include "lamella/core/fixed_sum.h"
+#include <fmt/format.h>
+
 #include "lamella/core/parallel.h"
+#include "lamella/solvers/bubble/integrator.h"
 
 namespace lamella::bubble {
+
+std::string step_underflow(double error, double tolerance) {
+    return fmt::format("the time step fell below 1e-12 (error {} at tolerance {})", error, tolerance);
+}
 
 template <int D>
 void stage_moved(System<D>& system, const Increment<D>& increment) {

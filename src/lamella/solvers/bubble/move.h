@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
 #include "lamella/core/fixed_sum.h"
 #include "lamella/core/parallel.h"
-#include "lamella/core/simd.h"
+#include "lamella/solvers/bubble/increment.h"
 #include "lamella/solvers/bubble/system.h"
 
 // What every integrator does with an increment (dx, dq) of the state.
@@ -27,24 +26,9 @@ struct Increment {
     }
 };
 
-/// x moved back into [0, L) by at most one box length; `wraps` counts the crossing.
-inline double wrapped(double x, double length, std::int32_t& wraps) {
-    if (x < 0.0) {
-        x += length;
-        --wraps;
-    }
-    if (x >= length) {
-        x -= length;
-        ++wraps;
-    }
-    return x;
-}
-
-/// Half the mean spacing of the bubbles. A bubble that jumps further in one step has left its neighborhood, and no
-/// error estimate would notice where it lands.
 template <int D>
 double farthest_move(const System<D>& system) {
-    return 0.5 * std::pow(system.foam.box.volume() / static_cast<double>(system.foam.live), 1.0 / D);
+    return half_spacing<D>(system.foam.box.volume(), static_cast<double>(system.foam.live));
 }
 
 /// stage = current state + increment, positions wrapped into the box.
@@ -55,8 +39,7 @@ void stage_moved(System<D>& system, const Increment<D>& increment);
 template <int D>
 void accept_moved(System<D>& system, const Increment<D>& increment);
 
-/// Error norm over the bubbles of an estimate in position and size, as a length: largest (or root mean square) of
-/// |ex_k| and |eq|/(d R^(d-1)), R at least the radius at which bubbles vanish.
+/// Error norm over the bubbles of an estimate in position and size: largest (or root mean square) bubble_error.
 /// @param estimate  estimate(i, ex, eq) fills the estimates of slot i
 template <int D, class Estimate>
 double error_norm(const System<D>& system, ErrorNorm norm, Estimate&& estimate) {
@@ -65,11 +48,7 @@ double error_norm(const System<D>& system, ErrorNorm norm, Estimate&& estimate) 
         double ex[D];
         double eq = 0.0;
         estimate(i, ex, eq);
-        const double radius = system.stage.radius[i] > min_radius ? system.stage.radius[i] : min_radius;
-        double worst = std::abs(eq) / (D == 2 ? 2.0 * radius : 3.0 * radius * radius);
-        for (std::size_t k = 0; k < D; ++k) worst = larger(worst, std::abs(ex[k]));
-        // A NaN must not lose the comparison: it makes the step fail.
-        return worst == worst ? worst : std::numeric_limits<double>::infinity();
+        return bubble_error<D>(ex, eq, system.stage.radius[i], min_radius);
     };
     const std::size_t count = system.foam.slots;
     if (norm == ErrorNorm::kMax) return system.domain().largest(parallel_max(count, 0.0, of_bubble));

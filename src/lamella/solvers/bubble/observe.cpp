@@ -34,6 +34,7 @@ double component(const Columns<D>& columns, std::size_t i, std::size_t k) {
 
 template <int D>
 sim::Frame BubbleSolver<D>::frame() const {
+    observe();
     const Foam<D>& foam = system_->foam;
     const auto order = id_order();
     const Census<D> census = take_census(*system_, options_);
@@ -42,9 +43,9 @@ sim::Frame BubbleSolver<D>::frame() const {
 
     sim::Frame frame;
     frame.solver = "bubble";
-    frame.time = time_;
+    frame.time = clock_.time;
     frame.time_unit = time_unit();
-    frame.step = steps_;
+    frame.step = clock_.steps;
     frame.box.emplace();
     frame.box->dimension = D;
     for (std::size_t k = 0; k < D; ++k) {
@@ -89,11 +90,12 @@ sim::Frame BubbleSolver<D>::frame() const {
 
 template <int D>
 std::vector<sim::Scalar> BubbleSolver<D>::scalars() const {
+    observe();
     const Model& model = system_->model;
     const Census<D> census = take_census(*system_, options_);
     std::vector<sim::Scalar> list = {
-        {"scaled_time", "-", mechanical_time_ * model.scaled_time_rate(), "tau = K t/<R_in>^2"},
-        {"mechanical_time", "-", mechanical_time_, "t, in units of the scene"},
+        {"scaled_time", "-", clock_.mechanical_time * model.scaled_time_rate(), "tau = K t/<R_in>^2"},
+        {"mechanical_time", "-", clock_.mechanical_time, "t, in units of the scene"},
         {"initial_mean_radius", "-", model.initial_mean_radius, "mean radius at the start"},
         {"energy", "-", options_.compat.energy ? census.total_energy_thesis : census.total_energy,
          options_.compat.energy ? "sigma_0 sum (S - d)^2, eq. 3.2" : "contact energy, the potential of the forces"},
@@ -111,10 +113,10 @@ std::vector<sim::Scalar> BubbleSolver<D>::scalars() const {
                             "-(1/V) sum F_a r_b over contacts"});
     }
     list.push_back({"pressure", "-", -trace / D, "-trace(stress)/d"});
-    list.push_back({"steps", "-", static_cast<double>(steps_), "accepted steps"});
-    list.push_back({"evaluations", "-", static_cast<double>(evaluations_), "of the right-hand side"});
-    list.push_back({"rejections", "-", static_cast<double>(rejections_), "rejected steps"});
-    list.push_back({"mean_step", "-", steps_ > 0 ? mechanical_time_ / static_cast<double>(steps_) : 0.0,
+    list.push_back({"steps", "-", static_cast<double>(clock_.steps), "accepted steps"});
+    list.push_back({"evaluations", "-", static_cast<double>(clock_.evaluations), "of the right-hand side"});
+    list.push_back({"rejections", "-", static_cast<double>(clock_.rejections), "rejected steps"});
+    list.push_back({"mean_step", "-", clock_.steps > 0 ? clock_.mechanical_time / static_cast<double>(clock_.steps) : 0.0,
                     "mechanical time per step"});
     return list;
 }

@@ -2,6 +2,7 @@
 
 #include "lamella/solvers/bubble/domain.h"
 #include "lamella/solvers/bubble/foam.h"
+#include "lamella/solvers/bubble/gas_sums.h"
 #include "lamella/solvers/bubble/model.h"
 #include "lamella/spatial/neighbor_list.h"
 
@@ -33,19 +34,6 @@ struct Rates {
         for (auto& column : velocity) column.resize(length);
         film.resize(length);
         weight.resize(length);
-    }
-};
-
-/// Gas exchange of one bubble once the sums over all bubbles are known.
-///   dV_i/dt = K film_i + c w_i (1/rho - 1/R_i),   1/rho = sum(w/R) / sum(w)      [Lankinen20, eq. 2.23, 2.27, 2.28]
-/// and dq/dt = (dV/dt) / kVolume.
-struct GasExchange {
-    double film_factor = 0.0;    ///< K / kVolume
-    double medium_factor = 0.0;  ///< c / kVolume
-    double inverse_rho = 0.0;
-
-    LAMELLA_HOST_DEVICE double size_rate(double film, double weight, double inverse_radius) const {
-        return film_factor * film + medium_factor * weight * (inverse_rho - inverse_radius);
     }
 };
 

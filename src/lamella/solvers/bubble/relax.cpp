@@ -124,7 +124,6 @@ private:
         struct Sums {
             FixedSum power, forces, velocities;
         };
-        constexpr double kMostTerms = 2147483648.0;  // 2^31
         const Sums none{FixedSum(kMostTerms * std::sqrt(scale.forces * scale.velocities)),
                         FixedSum(kMostTerms * scale.forces), FixedSum(kMostTerms * scale.velocities)};
         const Sums sums = parallel_reduce(

@@ -1,7 +1,6 @@
 #include "lamella/solvers/bubble/removal.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -16,11 +15,8 @@ namespace {
 /// What vanished bubbles lose or gain per time goes where their gas goes, so that rates keep adding up to zero.
 template <int D>
 void settle_rate(const Foam<D>& foam, const std::vector<std::uint32_t>& removed, double survivors, Column& rate) {
-    double lost = 0.0;
-    for (const std::uint32_t i : removed) {
-        lost += rate[i];
-        rate[i] = 0.0;
-    }
+    const double lost = exact_sum(removed.size(), [&](std::size_t n) { return rate[removed[n]]; });
+    for (const std::uint32_t i : removed) rate[i] = 0.0;
     parallel_for(foam.slots, [&](std::size_t i) { rate[i] += lost * foam.size[i] / survivors; });
 }
 
@@ -45,9 +41,9 @@ std::vector<sim::Event> remove_vanished(System<D>& system, bool as_printed) {
 
     std::vector<sim::Event> events;
     events.reserve(removed.size());
-    double excess = 0.0;
+    FixedSum excess(system.model.total_size);
     for (const std::uint32_t i : removed) {
-        excess += foam.size[i];
+        excess.add(foam.size[i]);
         sim::Event event{.time = 0.0, .kind = "remove", .position = {}, .detail = fmt::format("bubble {}", foam.id[i])};
         for (std::size_t k = 0; k < D; ++k) event.position[k] = foam.position[k][i];
         events.push_back(std::move(event));
@@ -62,8 +58,7 @@ std::vector<sim::Event> remove_vanished(System<D>& system, bool as_printed) {
     for (Column* column : system.attached_size_rates)
         if (!column->empty()) settle_rate(foam, removed, survivors, *column);
 
-    const double share = excess / survivors;
-    const double factor = as_printed && share > 0.0 ? std::pow(1.0 + std::pow(share, 1.0 / D), D) : 1.0 + share;
+    const double factor = growth_by_removal<D>(excess.value() / survivors, as_printed);
     parallel_for(foam.slots, [&](std::size_t i) { foam.size[i] *= factor; });
     return events;
 }

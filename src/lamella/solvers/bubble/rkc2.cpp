@@ -11,48 +11,16 @@
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/core/simd.h"
+#include "lamella/solvers/bubble/chebyshev.h"
 #include "lamella/solvers/bubble/integrator.h"
 #include "lamella/solvers/bubble/move.h"
 
 namespace lamella::bubble {
 namespace {
 
-constexpr int kMostStages = 250;
 constexpr std::size_t kGroupsPerBlock = 512;
-constexpr double kDamping = 2.0 / 13.0;
 
-/// d_j = mu d_(j-1) + nu d_(j-2) + h (rate f_(j-1) + first_rate f_0)
-struct StageWeights {
-    double mu, nu, rate, first_rate;
-};
-
-/// The weights of an s-stage step [Sommeijer98, section 2].
-std::vector<StageWeights> stage_weights(int s) {
-    const double w0 = 1.0 + kDamping / (s * s);
-    // Chebyshev polynomials and their first two derivatives at w0.
-    const auto n = static_cast<std::size_t>(s) + 1;
-    std::vector<double> t(n), t1(n), t2(n);
-    t[0] = 1.0;
-    t[1] = w0;
-    t1[1] = 1.0;
-    for (std::size_t j = 2; j < n; ++j) {
-        t[j] = 2.0 * w0 * t[j - 1] - t[j - 2];
-        t1[j] = 2.0 * t[j - 1] + 2.0 * w0 * t1[j - 1] - t1[j - 2];
-        t2[j] = 4.0 * t1[j - 1] + 2.0 * w0 * t2[j - 1] - t2[j - 2];
-    }
-    const double w1 = t1[n - 1] / t2[n - 1];
-    std::vector<double> b(n);
-    for (std::size_t j = 2; j < n; ++j) b[j] = t2[j] / (t1[j] * t1[j]);
-    b[0] = b[1] = b[2];
-    std::vector<StageWeights> weights(n);
-    weights[1] = {0.0, 0.0, 0.0, b[1] * w1};
-    for (std::size_t j = 2; j < n; ++j) {
-        const double rate = 2.0 * b[j] * w1 / b[j - 1];
-        const double a = 1.0 - b[j - 1] * t[j - 1];
-        weights[j] = {2.0 * b[j] * w0 / b[j - 1], -b[j] / b[j - 2], rate, -a * rate};
-    }
-    return weights;
-}
+using chebyshev::StageWeights;
 
 enum class StagesEnd {
     kDone,
@@ -69,6 +37,12 @@ public:
     Step step(System<D>& system, double longest) override;
     void foam_changed() override { rates_current_ = false; }
     double next_step() const override { return next_step_; }
+    IntegratorState state() const override { return {next_step_, stiffness_, rates_current_}; }
+    void set_state(const IntegratorState& state) override {
+        next_step_ = state.next_step;
+        stiffness_ = state.stiffness;
+        rates_current_ = state.rates_current;
+    }
 
     void save(sim::StateWriter& out, const std::vector<std::uint32_t>&) const override {
         out.write_value("integrator/next_step", next_step_);
@@ -120,16 +94,16 @@ double Rkc2<D>::advance_stage(System<D>& system, const StageWeights& w, double h
     const Rates<D>& rates = system.rates;
     const Model& model = system.model;
     const bool exchange = model.exchanges_gas();
-    const double rate = h * w.rate;
-    const double first_rate = h * w.first_rate;
+    const StageWeights step{w.mu, w.nu, h * w.rate, h * w.first_rate};
 
     const auto group_reach = [&](std::size_t at) {
         Simd squared = 0.0;
         for (std::size_t k = 0; k < D; ++k) {
-            Simd d = first_rate * load_lanes(&foam.velocity[k][at]);
-            if (!first)
-                d += w.mu * load_lanes(&last_.position[k][at]) + w.nu * load_lanes(&before_.position[k][at]) +
-                     rate * load_lanes(&rates.velocity[k][at]);
+            const Simd f0 = load_lanes(&foam.velocity[k][at]);
+            const Simd d = first ? step.first_rate * f0
+                                 : chebyshev::stage_increment(step, f0, load_lanes(&last_.position[k][at]),
+                                                              load_lanes(&before_.position[k][at]),
+                                                              load_lanes(&rates.velocity[k][at]));
             store_lanes(d, &before_.position[k][at]);
             store_lanes(load_lanes(&foam.position[k][at]) + d, &stage.position[k][at]);
             squared += d * d;
@@ -137,35 +111,20 @@ double Rkc2<D>::advance_stage(System<D>& system, const StageWeights& w, double h
         const Simd reach = square_root(squared);
         if (!exchange) return stdx::hmax(reach);
 
-        const Simd old_inverse = load_lanes(&stage.inverse_radius[at]);
-        Simd d = first_rate * load_lanes(&foam.size_rate[at]);
+        const Simd f0 = load_lanes(&foam.size_rate[at]);
+        Simd d = step.first_rate * f0;
         if (!first) {
-            const Simd film = load_lanes(&rates.film[at]);
-            const Simd weight = load_lanes(&rates.weight[at]);
-            const Simd size_rate =
-                gas_.film_factor * film + gas_.medium_factor * weight * (gas_.inverse_rho - old_inverse);
-            d += w.mu * load_lanes(&last_.size[at]) + w.nu * load_lanes(&before_.size[at]) + rate * size_rate;
+            const Simd size_rate = gas_.size_rate(load_lanes(&rates.film[at]), load_lanes(&rates.weight[at]),
+                                                  load_lanes(&stage.inverse_radius[at]));
+            d = chebyshev::stage_increment(step, f0, load_lanes(&last_.size[at]), load_lanes(&before_.size[at]),
+                                           size_rate);
         }
         store_lanes(d, &before_.size[at]);
         const Simd size = load_lanes(&foam.size[at]);
-        const Simd moved = larger(size + d, Simd(model.floor_size));
-        Simd radius;
-        if constexpr (D == 2) {
-            radius = square_root(moved);
-        } else {
-            double lanes[kLanes];
-            store_lanes(moved, lanes);
-            for (double& lane : lanes) lane = cube_root(lane);
-            radius = load_lanes(lanes);
-        }
-        const auto alive = size > Simd(0.0);
-        const Simd inverse = select(alive, 1.0 / radius, Simd(0.0));
-        store_lanes(select(alive, radius, Simd(0.0)), &stage.radius[at]);
-        store_lanes(inverse, &stage.inverse_radius[at]);
-        // R' - R <= (q' - q)/R'^(d-1) for growing bubbles
-        Simd growth = larger(d, Simd(0.0)) * inverse;
-        if constexpr (D == 3) growth *= inverse;
-        return stdx::hmax(reach + growth);
+        const StagedRadius<Simd> staged = staged_radius<D>(model, size, Simd(size + d));
+        store_lanes(staged.radius, &stage.radius[at]);
+        store_lanes(staged.inverse, &stage.inverse_radius[at]);
+        return stdx::hmax(reach + growth_bound<D>(d, staged.inverse));
     };
     const double reach = parallel_reduce(
         system.length() / kLanes, 0.0,
@@ -182,7 +141,7 @@ double Rkc2<D>::advance_stage(System<D>& system, const StageWeights& w, double h
 /// Stages 1 to s; `stage` is then the new state, evaluated.
 template <int D>
 StagesEnd Rkc2<D>::run_stages(System<D>& system, double h, int stages) {
-    const std::vector<StageWeights> weights = stage_weights(stages);
+    const std::vector<StageWeights> weights = chebyshev::stage_weights(stages);
     const double farthest = farthest_move(system);
     stage_reach_ = 0.0;
     last_.assign_zero(system.length());  // d_0, which stage 2 reads
@@ -201,7 +160,6 @@ StagesEnd Rkc2<D>::run_stages(System<D>& system, double h, int stages) {
     return StagesEnd::kDone;
 }
 
-/// 0.8 (y_n - y_(n+1)) + 0.4 h (f_n + f_(n+1))   [Sommeijer98, section 3]
 template <int D>
 double Rkc2<D>::step_error(const System<D>& system, const GasExchange& gas, double h) const {
     const Foam<D>& foam = system.foam;
@@ -209,10 +167,10 @@ double Rkc2<D>::step_error(const System<D>& system, const GasExchange& gas, doub
     const bool exchange = system.model.exchanges_gas();
     return error_norm<D>(system, options_.norm, [&](std::size_t i, double* ex, double& eq) {
         for (std::size_t k = 0; k < D; ++k)
-            ex[k] = -0.8 * last_.position[k][i] + 0.4 * h * (foam.velocity[k][i] + rates.velocity[k][i]);
+            ex[k] = chebyshev::step_error(h, last_.position[k][i], foam.velocity[k][i], rates.velocity[k][i]);
         if (!exchange) return;
         const double rate = gas.size_rate(rates.film[i], rates.weight[i], system.stage.inverse_radius[i]);
-        eq = -0.8 * last_.size[i] + 0.4 * h * (foam.size_rate[i] + rate);
+        eq = chebyshev::step_error(h, last_.size[i], foam.size_rate[i], rate);
     });
 }
 
@@ -231,14 +189,7 @@ Step Rkc2<D>::step(System<D>& system, double longest) {
 
     while (true) {
         const double wanted = std::min(next_step_, options_.max_step);
-        double h = std::min(wanted, longest);
-        // 5 % on the bound for contacts that close during the step.
-        int stages = 1 + static_cast<int>(std::sqrt(1.0 + 1.54 * h * 1.05 * first_stiffness));
-        stages = std::max(stages, 2);
-        if (stages > kMostStages) {
-            stages = kMostStages;
-            h = (stages * stages - 1) / (1.54 * 1.05 * first_stiffness);
-        }
+        const auto [stages, h] = chebyshev::stages_for(std::min(wanted, longest), first_stiffness);
         const StagesEnd end = run_stages(system, h, stages);
         if (end == StagesEnd::kListsOutgrown) {
             system.rebuild(2.0 * stage_reach_);
@@ -250,9 +201,7 @@ Step Rkc2<D>::step(System<D>& system, double longest) {
             next_step_ = 0.25 * h;
         } else {
             done.error = step_error(system, gas_, h);
-            // An error that is infinite (or NaN) cuts the step to a tenth.
-            const double factor = 0.8 * std::cbrt(tolerance / std::max(done.error, 1e-30));
-            next_step_ = std::clamp(factor, 0.1, 5.0) * h;
+            next_step_ = chebyshev::next_step(h, done.error, tolerance);
             if (done.error <= tolerance) {
                 // A step that was cut short to meet an output time says little about the longest possible one.
                 if (h < wanted) next_step_ = std::max(next_step_, wanted);
@@ -263,8 +212,7 @@ Step Rkc2<D>::step(System<D>& system, double longest) {
         ++done.rejections;
         stiffness_ = first_stiffness;
         if (next_step_ < 1e-12)
-            throw NumericalError(fmt::format("the time step fell below 1e-12 (error {} at tolerance {})", done.error,
-                                             tolerance));
+            throw NumericalError(step_underflow(done.error, tolerance));
     }
     expected_reach_ = stage_reach_;
     accept_moved(system, last_);

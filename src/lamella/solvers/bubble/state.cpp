@@ -21,6 +21,7 @@ auto in_order(const C& column, const std::vector<std::uint32_t>& order) {
 
 template <int D>
 void BubbleSolver<D>::save(sim::StateWriter& out) const {
+    observe();
     const auto order = id_order();
     const Model& m = system_->model;
     out.write_value("dimension", std::int64_t{D});
@@ -32,11 +33,11 @@ void BubbleSolver<D>::save(sim::StateWriter& out) const {
     for (std::size_t k = 0; k < D; ++k) out.write_value(fmt::format("box/length_{}", k), system_->foam.box.lengths[k]);
     out.write_value("model/initial_mean_radius", m.initial_mean_radius);
     out.write_value("model/initial_mean_surface", m.initial_mean_surface);
-    out.write_value("time", time_);
-    out.write_value("mechanical_time", mechanical_time_);
-    out.write_value("steps", steps_);
-    out.write_value("evaluations", evaluations_);
-    out.write_value("rejections", rejections_);
+    out.write_value("time", clock_.time);
+    out.write_value("mechanical_time", clock_.mechanical_time);
+    out.write_value("steps", clock_.steps);
+    out.write_value("evaluations", clock_.evaluations);
+    out.write_value("rejections", clock_.rejections);
     out.write_value("start_gas", start_gas_);
     out.write_value("start_count", start_count_);
     integrator_->save(out, order);
@@ -74,11 +75,11 @@ void BubbleSolver<D>::load(sim::StateReader& in) {
     }
     m.initial_mean_radius = in.read_double("model/initial_mean_radius");
     m.initial_mean_surface = in.read_double("model/initial_mean_surface");
-    time_ = in.read_double("time");
-    mechanical_time_ = in.read_double("mechanical_time");
-    steps_ = in.read_integer("steps");
-    evaluations_ = in.read_integer("evaluations");
-    rejections_ = in.read_integer("rejections");
+    clock_.time = in.read_double("time");
+    clock_.mechanical_time = in.read_double("mechanical_time");
+    clock_.steps = in.read_integer("steps");
+    clock_.evaluations = in.read_integer("evaluations");
+    clock_.rejections = in.read_integer("rejections");
     start_gas_ = in.read_double("start_gas");
     start_count_ = start_count;
     m.total_size = start_gas_;
@@ -87,6 +88,7 @@ void BubbleSolver<D>::load(sim::StateReader& in) {
     integrator_->load(in, *system_);
     system_->prepare(LiquidMotion::kAsGiven);
     system_->rebuild();
+    take_to_device();
 }
 
 template class BubbleSolver<2>;

@@ -5,6 +5,7 @@
 
 #include "lamella/solvers/bubble/domain.h"
 #include "lamella/solvers/bubble/foam.h"
+#include "lamella/solvers/bubble/increment.h"
 #include "lamella/solvers/bubble/liquid.h"
 #include "lamella/solvers/bubble/model.h"
 #include "lamella/solvers/bubble/options.h"
@@ -76,8 +77,9 @@ private:
 /// Radius and inverse radius of a stage's size q; 0 where the bubble had vanished before the step.
 template <int D>
 void set_radius(const Model& model, double size, bool alive, double& radius, double& inverse_radius) {
-    radius = alive ? Shape<D>::radius(size > model.floor_size ? size : model.floor_size) : 0.0;
-    inverse_radius = alive ? 1.0 / radius : 0.0;
+    const StagedRadius<double> staged = staged_radius<D>(model, alive ? 1.0 : 0.0, size);
+    radius = staged.radius;
+    inverse_radius = staged.inverse;
 }
 
 }  // namespace lamella::bubble

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.h"
 #include "lamella/solvers/melp/melp_solver.h"
+#include "lamella/solvers/melp/start.h"
 
 #include <fmt/format.h>
 
@@ -74,14 +75,16 @@ void MelpSolver::save(sim::StateWriter& out) const {
     save_columns(out, "coarse", coarse_);
     save_columns(out, "fine", fine_);
     out.write_value("regions", static_cast<std::int64_t>(gas_.size()));
-    std::vector<std::int32_t> number;
+    std::vector<std::int32_t> number, kind;
     std::vector<double> gas, even;
     for (const Gas& g : gas_) {
         number.push_back(g.region);
-        gas.insert(gas.end(), {g.amount, g.volume, g.calibration});
+        gas.insert(gas.end(), {g.amount, g.volume, g.calibration, g.film_radius});
+        kind.insert(kind.end(), {g.closed ? 1 : 0, g.held ? 1 : 0, g.burst ? 1 : 0});
     }
     for (const EvenFilm& film : even_) even.insert(even.end(), {film.liquid_volume, film.surfactant});
     out.write("region/number", std::span<const std::int32_t>(number));
+    out.write("region/kind", std::span<const std::int32_t>(kind));
     out.write("region/gas", std::span<const double>(gas));
     out.write("region/even_film", std::span<const double>(even));
     out.write_value("spacing", spacing_);
@@ -89,27 +92,36 @@ void MelpSolver::save(sim::StateWriter& out) const {
     out.write_value("steps", steps_);
     out.write_value("step", step_);
     out.write_value("initial_liquid", initial_liquid_);
+    out.write_value("next_event", static_cast<std::int64_t>(next_event_));
 }
 
 void MelpSolver::load(sim::StateReader& in) {
     coarse_ = load_columns<CoarseParticles>(in, "coarse");
     fine_ = load_columns<FineParticles>(in, "fine");
     const std::int64_t stored = in.read_integer("regions");
-    if (stored < 1 || stored > static_cast<std::int64_t>(coarse_.size()))
-        throw InputError(fmt::format("regions = {} is no number of regions of {} particles", stored, coarse_.size()));
+    if (stored < 1 || stored > static_cast<std::int64_t>(input_.films->mesh.regions.size()))
+        throw InputError(fmt::format("regions = {} is no number of regions of this scene", stored));
     const auto regions = static_cast<std::size_t>(stored);
     require_regions(coarse_.region, regions, "coarse");
     require_regions(fine_.region, regions, "fine");
-    std::vector<std::int32_t> number;
+    std::vector<std::int32_t> number, kind;
     std::vector<double> gas, even;
     in.read("region/number", regions, number);
-    in.read("region/gas", 3 * regions, gas);
+    in.read("region/kind", 3 * regions, kind);
+    in.read("region/gas", 4 * regions, gas);
     in.read("region/even_film", 2 * regions, even);
     gas_.assign(regions, {});
     even_.assign(regions, {});
     for (std::size_t r = 0; r < regions; ++r) {
-        gas_[r] = {.region = number[r], .amount = gas[3 * r], .volume = gas[3 * r + 1], .calibration = gas[3 * r + 2]};
-        even_[r] = {even[2 * r], even[2 * r + 1]};
+        gas_[r] = {.region = number[r],
+                   .amount = gas[4 * r],
+                   .volume = gas[4 * r + 1],
+                   .calibration = gas[4 * r + 2],
+                   .closed = kind[3 * r] != 0,
+                   .held = kind[3 * r + 1] != 0,
+                   .burst = kind[3 * r + 2] != 0,
+                   .film_radius = gas[4 * r + 3]};
+        even_[r] = {even[2 * r], even[2 * r + 1], gas_[r].held};
     }
     spacing_ = in.read_double("spacing");
     if (!(spacing_ > 0.0)) throw InputError(fmt::format("spacing = {} m is no distance of particles", spacing_));
@@ -117,6 +129,12 @@ void MelpSolver::load(sim::StateReader& in) {
     steps_ = in.read_integer("steps");
     step_ = in.read_double("step");
     initial_liquid_ = in.read_double("initial_liquid");
+    const std::int64_t next = in.read_integer("next_event");
+    if (next < 0 || next > static_cast<std::int64_t>(input_.films->events.size()))
+        throw InputError(fmt::format("next_event = {} is none of {} events", next, input_.films->events.size()));
+    next_event_ = static_cast<std::size_t>(next);
+    rims_ = start_rims(*input_.films, options_);
+    set_rims(time_);
     update_shape();
     update_liquid();
 }

@@ -50,7 +50,9 @@ Films films_of(const Geometry& geometry,
     std::vector<double> liquid(even.size(), 0.0);
     for (std::size_t e = 0; e < count; ++e)
         liquid[static_cast<std::size_t>(coarse.region[e])] += gathered.liquid_volume[e];
-    const std::vector<Vec3> drift = region_drifts(geometry, coarse, even.size());
+    std::vector<Vec3> drift = region_drifts(geometry, coarse, even.size());
+    for (std::size_t r = 0; r < even.size(); ++r)
+        if (even[r].held) drift[r] = {};
     Films films;
     films.liquid_volume.resize(count);
     films.thickness.resize(count);
@@ -68,7 +70,7 @@ Films films_of(const Geometry& geometry,
         films.liquid_volume[e] = std::max(volume, thinnest * a);
         films.thickness[e] = films.liquid_volume[e] / a;
         films.concentration[e] = (evenly ? share * even[r].surfactant : gathered.surfactant[e]) / a;
-        films.tension[e] = law.tension(films.concentration[e]);
+        films.tension[e] = evenly ? law.reference_tension : law.tension(films.concentration[e]);
         films.seen_thickness[e] = volume > 0.0 && !evenly ? gathered.seen_volume[e] / volume : films.thickness[e];
         Vec3 u;
         if (evenly)

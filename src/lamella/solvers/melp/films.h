@@ -8,10 +8,11 @@
 
 namespace lamella::melp {
 
-/// Liquid and surfactant of a region whose films have no fine particles: spread evenly.
+/// Liquid and surfactant of a region whose films have no fine particles: spread evenly, the tension the material's.
 struct EvenFilm {
     double liquid_volume = 0.0;  ///< of the whole region [m^3]; 0: the region has fine particles
     double surfactant = 0.0;     ///< [mol]
+    bool held = false;           ///< by rims: it does not fly
 };
 
 /// The film at coarse particles as the fine ones make it; one entry per coarse particle.

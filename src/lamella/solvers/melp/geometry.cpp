@@ -3,6 +3,7 @@
 #include "lamella/core/parallel.h"
 #include "lamella/linalg/small_cholesky.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lamella::melp {
@@ -15,25 +16,31 @@ Frame frame_of(const Vec3& n) {
     return {{{1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]}}, {{b, sign + n[1] * n[1] * a, -n[1]}}, n};
 }
 
-Patch fit_patch(std::span<const Vec3> position, const Vec3& frame_normal, const Neighbors& neighbors, std::size_t i) {
+Patch fit_patch(std::span<const Vec3> position,
+                const Vec3& frame_normal,
+                const Neighbors& neighbors,
+                const Images& images,
+                std::size_t i) {
     Patch patch{position[i], frame_of(frame_normal)};
     constexpr std::size_t kTerms = 6;
-    if (neighbors.end(i) - neighbors.begin(i) + 1 < kTerms) return patch;
+    if (neighbors.end(i) - neighbors.begin(i) + images.end(i) - images.begin(i) + 1 < kTerms) return patch;
     const double unit = neighbors.kernel.support_radius;  // coordinates of size 1 keep the matrix well scaled
     std::array<double, kTerms * kTerms> matrix{};
     std::array<double, kTerms> right{};
     matrix[0] = 1.0;  // the particle itself
-    for (std::size_t k = neighbors.begin(i); k < neighbors.end(i); ++k) {
-        const Vec3 d = (position[neighbors.index[k]] - position[i]) / unit;
+    const auto add = [&](const Vec3& place) {
+        const Vec3 d = (place - position[i]) / unit;
         const double u = dot(patch.frame.e1, d), v = dot(patch.frame.e2, d), z = dot(patch.frame.normal, d);
-        const double weight = 1.0 - squared_norm(d);
+        const double weight = std::max(1.0 - squared_norm(d), 0.0);
         const std::array<double, kTerms> term{1.0, u, v, u * u, u * v, v * v};
         for (std::size_t p = 0; p < kTerms; ++p) {
             const double weighted = weight * term[p];
             for (std::size_t q = 0; q <= p; ++q) matrix[p * kTerms + q] += weighted * term[q];
             right[p] += weighted * z;
         }
-    }
+    };
+    for (std::size_t k = neighbors.begin(i); k < neighbors.end(i); ++k) add(position[neighbors.index[k]]);
+    for (std::size_t k = images.begin(i); k < images.end(i); ++k) add(images.place[k]);
     if (linalg::solve_positive<kTerms>(matrix, right))
         patch.c = {right[0] * unit, right[1], right[2], right[3] / unit, right[4] / unit, right[5] / unit};
     return patch;
@@ -56,17 +63,22 @@ Tensor gradient_map(std::span<const Vec3> position,
                     std::span<const double> area,
                     const Vec3& normal,
                     const Neighbors& neighbors,
+                    const Images& images,
                     std::size_t i) {
     const Frame frame = frame_of(normal);
     double uu = 0.0, uv = 0.0, vv = 0.0;
-    for (std::size_t k = neighbors.begin(i); k < neighbors.end(i); ++k) {
-        const std::uint32_t j = neighbors.index[k];
-        const Vec3 d = position[j] - position[i];
-        const double u = dot(frame.e1, d), v = dot(frame.e2, d), w = 0.5 * area[j] * neighbors.laplacian[k];
+    const auto add = [&](const Vec3& d, double w) {
+        const double u = dot(frame.e1, d), v = dot(frame.e2, d);
         uu += w * u * u;
         uv += w * u * v;
         vv += w * v * v;
+    };
+    for (std::size_t k = neighbors.begin(i); k < neighbors.end(i); ++k) {
+        const std::uint32_t j = neighbors.index[k];
+        add(position[j] - position[i], 0.5 * area[j] * neighbors.laplacian[k]);
     }
+    for (std::size_t k = images.begin(i); k < images.end(i); ++k)
+        add(images.place[k] - position[i], 0.5 * area[images.index[k]] * images.laplacian[k]);
     // In the middle of a film this is the unit matrix. Neighbors on a line leave one direction unseen: no gradient
     // then.
     constexpr double kUnseen = 1e-3;
@@ -81,10 +93,12 @@ Tensor gradient_map(std::span<const Vec3> position,
 
 }  // namespace
 
-Geometry geometry_of(const CoarseParticles& coarse, double support_radius) {
+Geometry geometry_of(const CoarseParticles& coarse, double support_radius, std::span<const RimPiece> rims) {
     Geometry g;
     g.neighbors = find_neighbors(coarse.position, coarse.frame_normal, coarse.region, support_radius);
+    g.images = find_images(rims, coarse.position, coarse.frame_normal, coarse.region, support_radius);
     const Neighbors& same = g.neighbors.same;
+    const Images nothing;
     const std::size_t count = coarse.size();
     g.patch.resize(count);
     g.normal.resize(count);
@@ -94,18 +108,23 @@ Geometry geometry_of(const CoarseParticles& coarse, double support_radius) {
     constexpr std::size_t kBlock = 256;
     parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            g.patch[i] = fit_patch(coarse.position, coarse.frame_normal[i], same, i);
+            g.patch[i] = fit_patch(coarse.position, coarse.frame_normal[i], same, g.images, i);
             const PatchShape shape = shape_of(g.patch[i]);
             g.normal[i] = shape.normal;
             g.curvature[i] = shape.curvature;
             double density = same.kernel.value(0.0);
             for (std::size_t k = same.begin(i); k < same.end(i); ++k) density += same.weight[k];
+            for (std::size_t k = g.images.begin(i); k < g.images.end(i); ++k) density += g.images.weight[k];
             g.area[i] = 1.0 / density;
         }
     });
+    if (!g.images.empty()) g.mirrored_map.resize(count);
     parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i)
-            g.gradient_map[i] = gradient_map(coarse.position, g.area, g.normal[i], same, i);
+        for (std::size_t i = first; i < last; ++i) {
+            g.gradient_map[i] = gradient_map(coarse.position, g.area, g.normal[i], same, nothing, i);
+            if (!g.images.empty())
+                g.mirrored_map[i] = gradient_map(coarse.position, g.area, g.normal[i], same, g.images, i);
+        }
     });
     return g;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lamella/core/vec.h"
+#include "lamella/solvers/melp/images.h"
 #include "lamella/solvers/melp/neighbors.h"
 #include "lamella/solvers/melp/particles.h"
 #include "lamella/solvers/melp/tensor.h"
@@ -34,9 +35,13 @@ struct Patch {
     }
 };
 
-/// The least squares fit of a patch to a particle and its neighbors of the same region, weighted with the kernel.
-/// Where they are too few for a quadratic (less than six, or on a line) the patch is flat.
-Patch fit_patch(std::span<const Vec3> position, const Vec3& frame_normal, const Neighbors& neighbors, std::size_t i);
+/// The least squares fit of a patch to a particle, its neighbors of the same region and what it sees beyond a rim,
+/// weighted with the kernel. Where they are too few for a quadratic (less than six, or on a line) the patch is flat.
+Patch fit_patch(std::span<const Vec3> position,
+                const Vec3& frame_normal,
+                const Neighbors& neighbors,
+                const Images& images,
+                std::size_t i);
 
 /// Normal and curvature of a patch at its origin. A sphere whose normal points outward has curvature -2 / R: this is
 /// the K of [method sheet 1], the Laplacian of the height.
@@ -49,16 +54,19 @@ PatchShape shape_of(const Patch& patch);
 /// What follows from where the coarse particles are.
 struct Geometry {
     NeighborLists neighbors;
+    Images images;  ///< what lies beyond rims
     std::vector<Patch> patch;
     std::vector<Vec3> normal;
     std::vector<double> curvature;     ///< measured, for reports; no force comes from it [1/m]
     std::vector<double> area;          ///< 1 / sum W, the particle itself counted [m^2]
     std::vector<Tensor> gradient_map;  ///< makes gradients of linear fields exact, and tangent: see gradient()
+    std::vector<Tensor> mirrored_map;  ///< the same with what lies beyond rims; empty where there are none
 
     std::size_t size() const { return normal.size(); }
 };
 
 /// Neighbors, patches with normals whose sign follows the frame normals, areas. [method sheet 4, 16.1]
-Geometry geometry_of(const CoarseParticles& coarse, double support_radius);
+/// @param rims  that hold the films, where they are now
+Geometry geometry_of(const CoarseParticles& coarse, double support_radius, std::span<const RimPiece> rims = {});
 
 }  // namespace lamella::melp

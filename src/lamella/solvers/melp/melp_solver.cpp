@@ -3,6 +3,7 @@
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/linalg/small_cholesky.h"
+#include "lamella/solvers/melp/keep_inside.h"
 #include "lamella/solvers/melp/operators.h"
 #include "lamella/solvers/melp/redistribution.h"
 #include "lamella/solvers/melp/start.h"
@@ -18,18 +19,23 @@
 #include <utility>
 
 namespace lamella::melp {
+namespace {
+
+constexpr double kMostOnEdges = 2.0;  // of the reference concentration
+
+}  // namespace
 
 MelpSolver::MelpSolver(const Options& options, const sim::SolverInput& input) : options_(options), input_(input) {
     if (!input_.films) throw InputError("the scene has no films; add a [[bubble]]");
-    law_ = {.reference_tension = input_.films->material.surface_tension,
-            .reference_concentration = options_.surfactant_concentration,
-            .temperature = options_.temperature};
-    if (law_.tension(2.0 * options_.surfactant_concentration) <= 0.0)
+    const film::Material& material = input_.films->material;
+    law_ = {.reference_tension = material.surface_tension,
+            .reference_concentration = film::start_surfactant(material),
+            .temperature = material.temperature};
+    if (law_.tension(2.0 * law_.reference_concentration) <= 0.0)
         throw InputError(fmt::format(
-            "melp.surfactant_concentration = {:.3g} mol/m^2 takes R T * that = {:.3g} N/m from the tension, "
-            "as much as material.surface_tension = {:.3g} N/m has",
-            options_.surfactant_concentration, law_.thermal_energy() * options_.surfactant_concentration,
-            law_.reference_tension));
+            "melp: the elasticity of an interface, {:.3g} N/m from material.surfactant = {:.3g} mol/m^2, is as high as "
+            "material.surface_tension = {:.3g} N/m: where a film has twice the surfactant it would have no tension",
+            film::elasticity(material), law_.reference_concentration, law_.reference_tension));
     refuse_unknown_films(*input_.films, options_);
 }
 
@@ -39,17 +45,21 @@ void MelpSolver::start(const sim::StartContext&) {
     fine_ = std::move(start.fine);
     gas_ = std::move(start.gas);
     even_ = std::move(start.even);
+    rims_ = std::move(start.rims);
     spacing_ = start.spacing;
+    set_rims(0.0);
     sort_fine_particles(fine_, spacing_);
     update_shape();
     even_out_layout();
-    const std::vector<double> volume = particle_volumes(coarse_, geometry_, gas_);
-    for (std::size_t r = 0; r < gas_.size(); ++r) gas_[r].calibration = gas_[r].volume / volume[r];
+    const std::vector<double> volume = particle_volumes(coarse_, geometry_, rims_now_, gas_);
+    for (std::size_t r = 0; r < gas_.size(); ++r)
+        if (gas_[r].closed) gas_[r].calibration = gas_[r].volume / volume[r];
     update_liquid();
     transfer_->project(geometry_.patch, geometry_.normal, fine_);
     update_liquid();
     for (const double v : fine_.liquid_volume) initial_liquid_ += v;
     for (const EvenFilm& film : even_) initial_liquid_ += film.liquid_volume;
+    apply_events();
 }
 
 /// Vertices of a mesh are no even layout: the first passes of redistribution are made before anything moves.
@@ -61,11 +71,14 @@ void MelpSolver::even_out_layout() {
         const std::vector<Vec3> shift = evening_shift(geometry_, coarse_, gas_.size(), spacing_);
         for (std::size_t i = 0; i < coarse_.size(); ++i)
             coarse_.position[i] += along_patch(geometry_.patch[i], shift[i]);
+        keep_coarse_inside();
         update_shape();
     }
 }
 
 sim::StepReport MelpSolver::advance(double time_limit) {
+    const auto& events = input_.films->events;
+    if (next_event_ < events.size()) time_limit = std::min(time_limit, events[next_event_].time);
     const double dt = choose_step(time_limit);
     const std::vector<Vec3> velocity_before = coarse_.velocity;
     const std::vector<Gas> gas_before = gas_;
@@ -82,14 +95,19 @@ sim::StepReport MelpSolver::advance(double time_limit) {
     filter_short_waves();
     give_to_fine(dt);
     move_coarse(dt, normal);
+    set_rims(time_ + dt);
+    keep_coarse_inside();
     update_shape();
     move_fine(dt);
+    clear_edges();
     update_liquid();
     give_back(momentum);
     follow_particle_volumes(dt);
+    vent(dt);
     time_ = dt >= time_limit - time_ ? time_limit : time_ + dt;
     step_ = dt;
     ++steps_;
+    apply_events();
     return {.step = dt,
             .evaluations = 1,
             .iterations = surfactant.solution.iterations + normal.solution.iterations,
@@ -98,9 +116,10 @@ sim::StepReport MelpSolver::advance(double time_limit) {
 
 /// Particles move by less than cfl spacings, and swings and falls are resolved.
 double MelpSolver::choose_step(double time_limit) const {
-    double fastest = 0.0;
+    double fastest = fastest_edge();
     for (const Vec3& u : coarse_.velocity) fastest = std::max(fastest, norm(u));
     for (const Vec3& u : fine_.velocity) fastest = std::max(fastest, norm(u));
+    fastest = std::max(fastest, rims_.fastest());
     const double farthest = options_.cfl * spacing_, pull = strongest_pull();
     double dt = options_.largest_step > 0.0 ? options_.largest_step : std::numeric_limits<double>::infinity();
     if (fastest > 0.0) dt = std::min(dt, farthest / fastest);
@@ -116,7 +135,7 @@ double MelpSolver::strongest_pull() const {
     const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, films_.concentration);
     double strongest = 0.0;
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
-        const double mass = options_.liquid_density * films_.thickness[i];
+        const double mass = liquid_density() * films_.thickness[i];
         const Vec3 pull = input_.films->material.gravity - (2.0 * law_.thermal_energy() / mass) * slope[i];
         strongest = std::max(strongest, norm(pull));
     }
@@ -126,7 +145,7 @@ double MelpSolver::strongest_pull() const {
 /// Gravity, air and surfactant act along the film; what fine particles will take is in coarse_.velocity then.
 SurfactantStep MelpSolver::push_along_film(double dt) {
     const std::size_t count = coarse_.size();
-    const double density = options_.liquid_density;
+    const double density = liquid_density();
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3& n = geometry_.normal[i];
         const double drag = dt * options_.air_drag / (density * films_.thickness[i]);
@@ -134,8 +153,9 @@ SurfactantStep MelpSolver::push_along_film(double dt) {
         u -= dot(u, n) * n;
         coarse_.velocity[i] = u / (1.0 + drag) + dot(coarse_.velocity[i], n) * n;
     }
+    pull_edges(dt);
     marangoni_.assign(count, {});
-    if (options_.surfactant_concentration == 0.0) return {};
+    if (fine_.size() == 0) return {};  // constant tension
     SurfactantStep step = solve_surfactant(geometry_, coarse_.position, films_, coarse_.velocity, law_, density, dt,
                                            options_.solver_tolerance);
     const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, step.concentration);
@@ -149,9 +169,8 @@ SurfactantStep MelpSolver::push_along_film(double dt) {
 std::vector<double> MelpSolver::masses() const {
     std::vector<double> mass(coarse_.size());
     for (std::size_t i = 0; i < mass.size(); ++i) {
-        const double radius =
-            std::cbrt(0.75 * gas_[static_cast<std::size_t>(coarse_.region[i])].volume / std::numbers::pi);
-        mass[i] = options_.liquid_density * films_.liquid_volume[i] +
+        const double radius = gas_[static_cast<std::size_t>(coarse_.region[i])].radius();
+        mass[i] = liquid_density() * films_.liquid_volume[i] +
                   options_.air_mass * input_.films->material.air_density * radius * geometry_.area[i];
     }
     return mass;
@@ -165,7 +184,7 @@ NormalStep MelpSolver::push_along_normals(double dt) {
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3& n = geometry_.normal[i];
         before[i] = dot(coarse_.velocity[i], n);
-        external[i] = (options_.liquid_density * films_.liquid_volume[i]) * input_.films->material.gravity;
+        external[i] = (liquid_density() * films_.liquid_volume[i]) * input_.films->material.gravity;
         if (dot(n, options_.wind) < 0.0)  // the side that the wind blows on
             external[i] += (options_.air_drag * geometry_.area[i]) * (options_.wind - coarse_.velocity[i]);
     }
@@ -173,6 +192,7 @@ NormalStep MelpSolver::push_along_normals(double dt) {
     NormalStep step = move_along_normals({.coarse = coarse_,
                                           .geometry = geometry_,
                                           .gas = gas_,
+                                          .rims = rims_now_,
                                           .outside_pressure = options_.outside_pressure,
                                           .mass = mass,
                                           .interface_tension = films_.tension,
@@ -186,7 +206,8 @@ NormalStep MelpSolver::push_along_normals(double dt) {
                                           .dt = dt,
                                           .tolerance = options_.solver_tolerance});
     for (std::size_t i = 0; i < count; ++i) coarse_.velocity[i] += (step.velocity[i] - before[i]) * geometry_.normal[i];
-    for (std::size_t r = 0; r < gas_.size(); ++r) gas_[r].volume += step.swept[r];
+    for (std::size_t r = 0; r < gas_.size(); ++r)
+        if (gas_[r].closed) gas_[r].volume += step.swept[r];
     return step;
 }
 
@@ -194,7 +215,8 @@ NormalStep MelpSolver::push_along_normals(double dt) {
 /// the velocity is made of these: a uniform velocity leaves nothing, a swing in mode 2 the square of a hundredth.
 void MelpSolver::filter_short_waves() {
     if (options_.grid_filter == 0.0) return;
-    const std::vector<Vec3> rough = roughness(geometry_, roughness(geometry_, coarse_.velocity));
+    const std::vector<Vec3> rough =
+        roughness(geometry_, roughness(geometry_, coarse_.velocity, Beyond::kVelocity), Beyond::kDifference);
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         const Vec3& n = geometry_.normal[i];
         coarse_.velocity[i] -= (options_.grid_filter * dot(rough[i], n)) * n;
@@ -206,7 +228,7 @@ void MelpSolver::filter_short_waves() {
 /// blew two bubbles up that met without damping.
 double MelpSolver::theta_of(double dt) const {
     constexpr double kResolved = 10.0;  // steps per period
-    const bool apart = geometry_.neighbors.other.index.empty();
+    const bool apart = geometry_.neighbors.other.index.empty() && !any_burst();
     return apart && kResolved * dt < slowest_period(gas_) ? options_.theta : 1.0;
 }
 
@@ -248,7 +270,7 @@ void MelpSolver::give_back(const std::vector<Vec3>& momentum) {
                     films_.liquid_volume[i] * geometry_.normal[i][k] * geometry_.normal[i][m];
     std::vector<Vec3> missing(gas_.size());
     for (std::size_t r = 0; r < gas_.size(); ++r) {
-        if (even_[r].liquid_volume > 0.0) continue;
+        if (even_[r].liquid_volume > 0.0 || gas_[r].held || gas_[r].burst) continue;
         std::array<double, 3> u{};
         for (std::size_t k = 0; k < 3; ++k) u[k] = momentum[r][k] - now[r][k];
         if (linalg::solve_positive<3>(along[r], u)) missing[r] = {{u[0], u[1], u[2]}};
@@ -263,18 +285,41 @@ void MelpSolver::give_back(const std::vector<Vec3>& momentum) {
 /// liquid behind, they take the velocity of the place they come to.
 void MelpSolver::move_coarse(double dt, const NormalStep& step) {
     const std::vector<Vec3> mean = region_velocities();
-    const std::vector<Vec3> shift = options_.redistribution ? evening_shift(geometry_, coarse_, gas_.size(), spacing_)
-                                                            : std::vector<Vec3>(coarse_.size());
+    std::vector<Vec3> shift = options_.redistribution ? evening_shift(geometry_, coarse_, gas_.size(), spacing_)
+                                                      : std::vector<Vec3>(coarse_.size());
     const std::vector<Tensor> slope = gradient(geometry_, coarse_.position, coarse_.velocity);
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         const Vec3& n = geometry_.normal[i];
-        const Vec3& carried = mean[static_cast<std::size_t>(coarse_.region[i])];
+        const auto region = static_cast<std::size_t>(coarse_.region[i]);
+        // Those of a film that has burst go with the liquid: edges move that far in a step.
+        const bool torn = gas_[region].burst;
+        const Vec3& carried = torn ? coarse_.velocity[i] : mean[region];
+        if (torn) shift[i] = {};
         const Vec3 along = dt * (carried - dot(carried, n) * n);
         const Vec3 liquid = dt * (coarse_.velocity[i] - dot(coarse_.velocity[i], n) * n);
         coarse_.position[i] += along + (dt * step.mean[i]) * n + along_patch(geometry_.patch[i], shift[i]);
         coarse_.velocity[i] += slope[i] * (along + shift[i] - liquid);
     }
     coarse_.frame_normal = geometry_.normal;
+    pull_back_spikes(dt);
+}
+
+/// Where films fold at a junction, cohesion is stronger than the particle's own film: without a limit single particles
+/// leave their film there and stretch it until it tears. What a particle stands out of the patch of its neighbors
+/// beyond a tenth of the spacing is taken back by and by, and so is the velocity with which it left.
+void MelpSolver::pull_back_spikes(double dt) {
+    constexpr double kFree = 0.1;  // spacings
+    constexpr double kShare = 0.3;
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        const double height = geometry_.patch[i].c[0], most = kFree * spacing_;
+        const double back = kShare * (height - std::clamp(height, -most, most));
+        if (back == 0.0) continue;
+        const Vec3& n = geometry_.patch[i].frame.normal;
+        coarse_.position[i] += back * n;
+        gas_[static_cast<std::size_t>(coarse_.region[i])].volume += geometry_.area[i] * back;
+        const double away = -std::copysign(1.0, back) * dot(coarse_.velocity[i], n);
+        if (away > 0.0) coarse_.velocity[i] += std::min(away * dt, std::abs(back)) / dt * std::copysign(1.0, back) * n;
+    }
 }
 
 /// Fine particles go with the flow, onto the film where it is now, and stretch with it.
@@ -282,26 +327,48 @@ void MelpSolver::move_fine(double dt) {
     parallel_for(fine_.size(), [&](std::size_t p) {
         const Tensor& slope = fine_.gradient[p];
         fine_.position[p] += dt * fine_.velocity[p];
-        fine_.thickness[p] *= std::exp(-dt * (slope[0][0] + slope[1][1] + slope[2][2]));
+        if (transfer_->stray(p))  // a drop in the air
+            fine_.velocity[p] += dt * input_.films->material.gravity;
+        else
+            fine_.thickness[p] *= std::exp(-dt * (slope[0][0] + slope[1][1] + slope[2][2]));
     });
     transfer_->project(geometry_.patch, geometry_.normal, fine_);
+    keep_inside({rims_now_, coarse_.position, coarse_.region, spacing_, 0.0}, fine_.region, fine_.position,
+                fine_.velocity);
     constexpr std::int64_t kSortEvery = 32;
     if ((steps_ + 1) % kSortEvery == 0) sort_fine_particles(fine_, spacing_);
 }
 
-void MelpSolver::update_shape() { geometry_ = geometry_of(coarse_, support_radius()); }
+void MelpSolver::set_rims(double time) { rims_now_ = rims_.at(time); }
+
+/// Coarse particles nearer to a rim than this would count its pictures double.
+void MelpSolver::keep_coarse_inside() {
+    constexpr double kNearest = 0.2;  // spacings
+    keep_inside({rims_now_, coarse_.position, coarse_.region, spacing_, kNearest * spacing_}, coarse_.region,
+                coarse_.position, coarse_.velocity);
+}
+
+void MelpSolver::update_shape() { geometry_ = geometry_of(coarse_, support_radius(), rims_now_); }
 
 void MelpSolver::update_liquid() {
     transfer_.emplace(coarse_, geometry_.normal, fine_, support_radius());
     films_ = films_of(geometry_, coarse_, transfer_->to_coarse(coarse_, fine_), even_, law_);
+    // The thick edge of a hole is no film: surfactant that does not fit on it goes into its liquid.
+    const double most = kMostOnEdges * law_.reference_concentration;
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        if (!gas_[static_cast<std::size_t>(coarse_.region[i])].burst) continue;
+        films_.concentration[i] = std::min(films_.concentration[i], most);
+        films_.tension[i] = law_.tension(films_.concentration[i]);
+    }
 }
 
 /// Sums over particles know a volume to a thousandth only, which would be 100 Pa: gases go by what films sweep, and
 /// follow the sums slowly. [method sheet 16.2]
 void MelpSolver::follow_particle_volumes(double dt) {
     const double share = -std::expm1(-options_.volume_rate * dt);
-    const std::vector<double> volume = particle_volumes(coarse_, geometry_, gas_);
-    for (std::size_t r = 0; r < gas_.size(); ++r) gas_[r].volume += share * (volume[r] - gas_[r].volume);
+    const std::vector<double> volume = particle_volumes(coarse_, geometry_, rims_now_, gas_);
+    for (std::size_t r = 0; r < gas_.size(); ++r)
+        if (gas_[r].closed && !gas_[r].burst) gas_[r].volume += share * (volume[r] - gas_[r].volume);
 }
 
 /// What went wrong in this step, before anything has moved; empty when nothing has.
@@ -310,19 +377,22 @@ std::string MelpSolver::fault_of_step() const {
         if (!std::isfinite(squared_norm(coarse_.velocity[i])))
             return fmt::format("the velocity of coarse particle {} is not finite", i);
     for (const Gas& gas : gas_)
-        if (!(gas.volume > 0.0)) return fmt::format("bubble {} has no volume left", gas.region);
+        if (gas.closed && !(gas.volume > 0.0)) return fmt::format("bubble {} has no volume left", gas.region);
     return {};
 }
 
-/// Of mode 2 of the smallest bubble, in an empty space but for air_mass. [method sheet 14, V7]
+/// Of mode 2 of the smallest bubble, or of the first mode of a disk as large as the smallest film on wires, in an empty
+/// space but for air_mass. [method sheet 14, V7]
 double MelpSolver::slowest_period(const std::vector<Gas>& bubbles) const {
     const film::Material& material = input_.films->material;
     double shortest = std::numeric_limits<double>::infinity();
     for (const Gas& gas : bubbles) {
-        const double radius = std::cbrt(0.75 * gas.volume / std::numbers::pi);
+        const double radius = gas.radius();
         const double mass =
-            options_.liquid_density * material.thickness + options_.air_mass * material.air_density * radius;
-        shortest = std::min(shortest, std::numbers::pi * radius * std::sqrt(mass / material.film_tension()));
+            liquid_density() * material.thickness + options_.air_mass * material.air_density * radius;
+        constexpr double kDrum = 2.404825557695773;  // first zero of the Bessel function J_0
+        const double wave = gas.closed ? std::numbers::pi : 2.0 * std::numbers::pi / kDrum;
+        shortest = std::min(shortest, wave * radius * std::sqrt(mass / material.film_tension()));
     }
     return shortest;
 }

@@ -6,12 +6,14 @@
 #include "lamella/solvers/melp/normal_motion.h"
 #include "lamella/solvers/melp/options.h"
 #include "lamella/solvers/melp/particles.h"
+#include "lamella/solvers/melp/rims.h"
 #include "lamella/solvers/melp/surfactant.h"
 #include "lamella/solvers/melp/transfer.h"
 
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lamella::melp {
@@ -32,6 +34,8 @@ public:
     sim::Frame frame() const override;
     std::vector<sim::Scalar> scalars() const override;
     std::vector<sim::Scalar> characteristic_numbers() const override;
+    double slow_motion() const override;
+    std::vector<sim::Event> take_events() override { return std::exchange(events_, {}); }
 
     void save(sim::StateWriter& out) const override;
     void load(sim::StateReader& in) override;
@@ -39,23 +43,37 @@ public:
     const CoarseParticles& coarse() const { return coarse_; }
     const FineParticles& fine() const { return fine_; }
     const std::vector<Gas>& gas() const { return gas_; }
+    const std::vector<RimPiece>& rims() const { return rims_now_; }
     const Geometry& geometry() const { return geometry_; }
     const Films& films() const { return films_; }
     double spacing() const { return spacing_; }
 
 private:
+    double liquid_density() const { return input_.films->material.liquid_density; }
     double support_radius() const { return options_.support_radius * spacing_; }
     double slowest_period(const std::vector<Gas>& bubbles) const;
     // The stages of a step, in order.
     double choose_step(double time_limit) const;
     double strongest_pull() const;
+    double fastest_edge() const;
     double theta_of(double dt) const;
     SurfactantStep push_along_film(double dt);
     NormalStep push_along_normals(double dt);
     void filter_short_waves();
     void give_to_fine(double dt);
     void move_coarse(double dt, const NormalStep& step);
+    void pull_back_spikes(double dt);
     void move_fine(double dt);
+    void pull_edges(double dt);
+    void vent(double dt);
+    void clear_edges();
+    void apply_events();
+    void apply(const film::Event& event);
+    void burst(std::size_t at, double radius, const std::string& kind);
+    std::vector<std::uint8_t> burst_regions() const;
+    bool any_burst() const;
+    void set_rims(double time);
+    void keep_coarse_inside();
     void update_shape();
     void update_liquid();
     void give_back(const std::vector<Vec3>& momentum);
@@ -77,13 +95,17 @@ private:
     FineParticles fine_;
     std::vector<Gas> gas_;
     std::vector<EvenFilm> even_;
+    Rims rims_;
     double spacing_ = 0.0;
     double time_ = 0.0;
     std::int64_t steps_ = 0;
     double step_ = 0.0;            ///< the last one
     double initial_liquid_ = 0.0;  ///< [m^3]
+    std::size_t next_event_ = 0;
+    std::vector<sim::Event> events_;
 
-    // What follows from the above: set by update_shape and update_liquid.
+    // What follows from the above: set by set_rims, update_shape and update_liquid.
+    std::vector<RimPiece> rims_now_;
     Geometry geometry_;
     std::optional<Transfer> transfer_;
     Films films_;

@@ -12,9 +12,14 @@
 namespace lamella::melp {
 
 Cohesion cohesion(double gamma, double beta) {
-    const double g = std::min(gamma, 1.0);
-    const double f = g + beta * g * (1.0 - g), slope = 1.0 + beta * (1.0 - 2.0 * g);
-    return {2.0 - f - g * slope, slope};
+    // Beyond 1 the attraction falls as fast as this: with gamma^-2 borders of three bubbles crumpled, without a fall
+    // single particles were drawn into the point where three bubbles and the air meet.
+    constexpr double kPower = 6.0;
+    const double shared = std::min(gamma, 1.0), excess = std::max(gamma, 1.0);
+    const double slope = gamma < 1.0 ? 1.0 + beta * (1.0 - 2.0 * gamma) : (1.0 - beta) * std::pow(gamma, -kPower);
+    const double f = shared + beta * shared * (1.0 - shared) +
+                     (1.0 - beta) * (1.0 - std::pow(excess, 1.0 - kPower)) / (kPower - 1.0);
+    return {2.0 - f - gamma * slope, slope};
 }
 
 namespace {
@@ -28,16 +33,19 @@ struct Pairs {
     std::vector<double> own;    ///< tau_i per particle
     std::vector<double> same;   ///< per entry of neighbors.same
     std::vector<double> other;  ///< per entry of neighbors.other
+    std::vector<double> image;  ///< per entry of images
 };
 
 Pairs pair_strengths(const NormalProblem& p) {
     const Neighbors& same = p.geometry.neighbors.same;
     const Neighbors& other = p.geometry.neighbors.other;
+    const Images& images = p.geometry.images;
     const std::vector<double>& a = p.geometry.area;
     Pairs pairs;
     pairs.own.resize(a.size());
     pairs.same.resize(same.index.size());
     pairs.other.resize(other.index.size());
+    pairs.image.resize(images.index.size());
     std::vector<double> toward(a.size());  // sigma f'
     parallel_for(a.size(), [&](std::size_t i) {
         double gamma = 0.0;
@@ -47,14 +55,31 @@ Pairs pair_strengths(const NormalProblem& p) {
         toward[i] = p.interface_tension[i] * c.other;
     });
     parallel_for(a.size(), [&](std::size_t i) {
-        const auto strength = [&](const Neighbors& list, std::size_t k, const std::vector<double>& tension) {
+        const auto strength = [&](const auto& list, std::size_t k, const std::vector<double>& tension) {
             const std::size_t j = list.index[k];
             return 0.5 * (tension[i] + tension[j]) * (a[i] * a[j]) * list.laplacian[k];
         };
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) pairs.same[k] = strength(same, k, pairs.own);
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) pairs.other[k] = strength(other, k, toward);
+        for (std::size_t k = images.begin(i); k < images.end(i); ++k) pairs.image[k] = strength(images, k, pairs.own);
     });
     return pairs;
+}
+
+/// What keeps films that fly at each other from passing through, as a pair: a stiff push back where particle i stands
+/// deeper than half a spacing in the other bubble [N / m^2, times the areas a force]. Gas alone presses films a quarter
+/// of a spacing into each other.
+Vec3 push_apart(const NormalProblem& p, std::size_t i, std::size_t j, double weight) {
+    constexpr double kFree = 0.5 / 3.0;  // support radii, which are 3 spacings unless asked for otherwise
+    constexpr double kStiff = 36.0;      // tension / support radius^2
+    const Vec3 between = p.geometry.normal[i] - p.geometry.normal[j];
+    const double square = squared_norm(between);
+    if (square < 2.0) return {};  // films that do not face each other
+    const double reach = p.geometry.neighbors.other.kernel.support_radius;
+    const double depth = dot(p.coarse.position[i] - p.coarse.position[j], between) / std::sqrt(square) - kFree * reach;
+    if (depth <= 0.0) return {};
+    const double tension = p.interface_tension[i] + p.interface_tension[j];
+    return (-kStiff * tension / (reach * reach) * depth * weight / std::sqrt(square)) * between;
 }
 
 /// Tension, cohesion and gas pressure along the normals. [N]
@@ -67,7 +92,12 @@ std::vector<double> forces(const NormalProblem& p, const Pairs& pairs, const std
         const Neighbors& same = g.neighbors.same;
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) pull += pairs.same[k] * (x[same.index[k]] - x[i]);
         const Neighbors& other = g.neighbors.other;
-        for (std::size_t k = other.begin(i); k < other.end(i); ++k) pull += pairs.other[k] * (x[other.index[k]] - x[i]);
+        for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
+            const std::size_t j = other.index[k];
+            pull += pairs.other[k] * (x[j] - x[i]) + (g.area[i] * g.area[j]) * push_apart(p, i, j, other.weight[k]);
+        }
+        const Images& images = g.images;
+        for (std::size_t k = images.begin(i); k < images.end(i); ++k) pull += pairs.image[k] * (images.place[k] - x[i]);
         force[i] =
             dot(pull, g.normal[i]) + p.gas[region_of(p.coarse, i)].gauge_pressure(p.outside_pressure) * gas_area[i];
     });
@@ -92,11 +122,50 @@ std::vector<std::size_t> clusters(const NormalProblem& p) {
     return cluster;
 }
 
-/// Bubbles that touch, free of wires: films push and twist them by nothing as a whole. Forces that have lost their part
-/// along the film do, a little. [method sheet 16.4 c']
+constexpr std::size_t kRigid = 6;
+/// A force and its moment over a length.
+using Rigid = std::array<double, kRigid>;
+
+/// Directions of forces and moments.
+std::vector<Rigid> all_directions() {
+    std::vector<Rigid> all(kRigid);
+    for (std::size_t a = 0; a < kRigid; ++a) all[a][a] = 1.0;
+    return all;
+}
+
+/// Those in which half a bubble on a plate can slide and turn; those in which its gas does not push it, too: only along
+/// the plate's normal does the plate take part of the push.
+enum class OnPlate { kSlides, kGas };
+std::vector<Rigid> directions_on(const Vec3& plate_normal, OnPlate what) {
+    const Frame f = frame_of(plate_normal);
+    std::vector<Rigid> directions;
+    const auto add = [&](const Vec3& e, std::size_t at) {
+        Rigid d{};
+        for (std::size_t k = 0; k < 3; ++k) d[at + k] = e[k];
+        directions.push_back(d);
+    };
+    add(f.e1, 0);
+    add(f.e2, 0);
+    add(f.normal, 3);
+    if (what == OnPlate::kSlides) return directions;
+    add(f.e1, 3);
+    add(f.e2, 3);
+    return directions;
+}
+
+/// What holds a region; nothing for one that flies.
+const RimPiece* rim_of(const NormalProblem& p, std::size_t region) {
+    for (const RimPiece& rim : p.rims)
+        if (static_cast<std::size_t>(rim.region) == region) return &rim;
+    return nullptr;
+}
+
+/// Bubbles that touch, free of rims: films push and twist them by nothing as a whole. Forces that have lost their part
+/// along the film do, a little. [method sheet 16.4 c'] Half a bubble on a plate is free in some directions.
 class FreeCluster {
 public:
-    FreeCluster(const NormalProblem& p, std::vector<std::size_t> members) : p_(p), members_(std::move(members)) {
+    FreeCluster(const NormalProblem& p, std::vector<std::size_t> members, std::vector<Rigid> directions)
+        : p_(p), members_(std::move(members)), directions_(std::move(directions)) {
         for (const std::size_t i : members_) {
             center_ += p.geometry.area[i] * p.coarse.position[i];
             length_ += p.geometry.area[i];
@@ -110,37 +179,39 @@ public:
     void remove_resultant(std::vector<double>& values,
                           std::span<const Vec3> beside,
                           std::span<const double> share) const {
-        std::array<double, kRigid * kRigid> matrix{};
-        std::array<double, kRigid> resultant{};
+        const std::size_t count = directions_.size();
+        std::vector<double> matrix(count * count, 0.0), resultant(count, 0.0);
         for (const std::size_t i : members_) {
-            const Rigid e = rigid(i, p_.geometry.normal[i]);
-            const Rigid f = rigid(i, values[i] * p_.geometry.normal[i] + beside[i]);
-            for (std::size_t a = 0; a < kRigid; ++a) {
+            const std::vector<double> e = rigid(i, p_.geometry.normal[i]);
+            const std::vector<double> f = rigid(i, values[i] * p_.geometry.normal[i] + beside[i]);
+            for (std::size_t a = 0; a < count; ++a) {
                 resultant[a] += f[a];
-                for (std::size_t b = 0; b < kRigid; ++b) matrix[a * kRigid + b] += share[i] * e[a] * e[b];
+                for (std::size_t b = 0; b < count; ++b) matrix[a * count + b] += share[i] * e[a] * e[b];
             }
         }
         // A sphere cannot be twisted by forces along its normals: such directions stay as they are.
         constexpr double kCannot = 1e-4;
-        const auto z = linalg::solve_symmetric(kRigid, matrix, resultant, kCannot).x;
+        const auto z = linalg::solve_symmetric(count, matrix, resultant, kCannot).x;
         for (const std::size_t i : members_) {
-            const Rigid e = rigid(i, p_.geometry.normal[i]);
-            for (std::size_t a = 0; a < kRigid; ++a) values[i] -= share[i] * e[a] * z[a];
+            const std::vector<double> e = rigid(i, p_.geometry.normal[i]);
+            for (std::size_t a = 0; a < count; ++a) values[i] -= share[i] * e[a] * z[a];
         }
     }
 
 private:
-    static constexpr std::size_t kRigid = 6;
-    using Rigid = std::array<double, kRigid>;
-
-    /// A vector at a particle and its moment about the center, over the cluster's size.
-    Rigid rigid(std::size_t i, const Vec3& f) const {
+    /// A vector at a particle and its moment about the center, over the cluster's size, in the cluster's directions.
+    std::vector<double> rigid(std::size_t i, const Vec3& f) const {
         const Vec3 moment = cross(p_.coarse.position[i] - center_, f) / length_;
-        return {f[0], f[1], f[2], moment[0], moment[1], moment[2]};
+        const Rigid all{f[0], f[1], f[2], moment[0], moment[1], moment[2]};
+        std::vector<double> along(directions_.size(), 0.0);
+        for (std::size_t d = 0; d < along.size(); ++d)
+            for (std::size_t a = 0; a < kRigid; ++a) along[d] += directions_[d][a] * all[a];
+        return along;
     }
 
     const NormalProblem& p_;
     std::vector<std::size_t> members_;
+    std::vector<Rigid> directions_;
     Vec3 center_;
     double length_ = 0.0;
 };
@@ -151,9 +222,17 @@ std::vector<FreeCluster> free_clusters(const NormalProblem& p) {
     for (std::size_t i = 0; i < p.coarse.size(); ++i) members[cluster_of[region_of(p.coarse, i)]].push_back(i);
     std::vector<FreeCluster> free;
     for (std::vector<std::size_t>& group : members) {
-        const bool held = std::any_of(group.begin(), group.end(),
-                                      [&](std::size_t i) { return !p.gas[region_of(p.coarse, i)].closed; });
-        if (!group.empty() && !held) free.emplace_back(p, std::move(group));
+        if (group.empty()) continue;
+        const RimPiece* rim = nullptr;
+        for (const std::size_t i : group)
+            if (p.gas[region_of(p.coarse, i)].held) rim = rim_of(p, region_of(p.coarse, i));
+        const bool torn = std::any_of(group.begin(), group.end(),
+                                      [&](std::size_t i) { return p.gas[region_of(p.coarse, i)].burst; });
+        if (torn) continue;
+        if (rim == nullptr)
+            free.emplace_back(p, std::move(group), all_directions());
+        else if (rim->kind == RimKind::kPlate)
+            free.emplace_back(p, std::move(group), directions_on(rim->b, OnPlate::kSlides));
     }
     return free;
 }
@@ -166,9 +245,12 @@ std::vector<double> gas_areas(const NormalProblem& p) {
     const std::vector<Vec3> nothing(area.size());
     std::vector<std::vector<std::size_t>> members(p.gas.size());
     for (std::size_t i = 0; i < area.size(); ++i) members[region_of(p.coarse, i)].push_back(i);
-    for (std::size_t r = 0; r < members.size(); ++r)
-        if (p.gas[r].closed && !members[r].empty())
-            FreeCluster(p, std::move(members[r])).remove_resultant(area, nothing, p.geometry.area);
+    for (std::size_t r = 0; r < members.size(); ++r) {
+        if (!p.gas[r].closed || p.gas[r].burst || members[r].empty()) continue;
+        const RimPiece* rim = rim_of(p, r);
+        auto directions = rim == nullptr ? all_directions() : directions_on(rim->b, OnPlate::kGas);
+        FreeCluster(p, std::move(members[r]), std::move(directions)).remove_resultant(area, nothing, p.geometry.area);
+    }
     return area;
 }
 
@@ -186,6 +268,9 @@ public:
             for (std::size_t k = same.begin(i); k < same.end(i); ++k)
                 sum -= pairs.same[k] * (free ? dot(n[i], n[same.index[k]]) : 1.0);
             for (std::size_t k = other.begin(i); k < other.end(i); ++k) sum -= pairs.other[k];
+            const Images& images = p.geometry.images;
+            for (std::size_t k = images.begin(i); k < images.end(i); ++k)
+                sum -= pairs.image[k] * dot(n[i], images.normal[k]);
             diagonal_[i] = sum;
         });
     }
@@ -202,6 +287,18 @@ public:
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum += pairs_.same[k] * v[same.index[k]];
         for (std::size_t k = other.begin(i); k < other.end(i); ++k)
             sum += pairs_.other[k] * dot(n[i], n[other.index[k]]) * v[other.index[k]];
+        const Images& images = p_.geometry.images;
+        for (std::size_t k = images.begin(i); k < images.end(i); ++k)
+            sum += pairs_.image[k] * images.mirrors[images.mirror[k]].sign * v[images.index[k]];
+        return sum;
+    }
+
+    /// What the motion of rims adds to (J_film v)_i.
+    double of_rims(std::size_t i) const {
+        const Images& images = p_.geometry.images;
+        double sum = 0.0;
+        for (std::size_t k = images.begin(i); k < images.end(i); ++k)
+            sum += pairs_.image[k] * dot(images.mirrors[images.mirror[k]].drift, images.normal[k]);
         return sum;
     }
 
@@ -240,7 +337,7 @@ NormalStep move_along_normals(const NormalProblem& p) {
         const double a = gas_area[i];
         inertia[i] = p.mass[i] * (1.0 + p.dt * p.damping);
         given[i] = p.mass[i] * p.velocity[i] + p.dt * (force[i] + dot(p.external[i], p.geometry.normal[i]));
-        right[i] = given[i] + mixed * stiffness.apply(p.velocity, i);
+        right[i] = given[i] + mixed * stiffness.apply(p.velocity, i) + p.theta * p.dt * p.dt * stiffness.of_rims(i);
         scale[i] = 1.0 / (inertia[i] - implicit * stiffness.diagonal(i) + gas[region_of(p.coarse, i)] * a * a);
     });
     const auto apply = [&](const std::vector<double>& v, std::vector<double>& y) {

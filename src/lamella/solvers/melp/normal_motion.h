@@ -14,6 +14,7 @@ struct NormalProblem {
     const CoarseParticles& coarse;
     const Geometry& geometry;
     std::span<const Gas> gas;                   ///< per region
+    std::span<const RimPiece> rims;             ///< that hold films, now
     double outside_pressure;                    ///< [Pa]
     std::span<const double> mass;               ///< [kg]
     std::span<const double> interface_tension;  ///< sigma of one interface [N/m]
@@ -54,11 +55,14 @@ struct NormalStep {
 /// cluster as a whole: what discretization leaves is removed.
 NormalStep move_along_normals(const NormalProblem& problem);
 
-/// The tension of the particle's own film and that toward other regions, per interface tension; gamma is how much film
-/// of other regions lies at the particle (1 where two films coincide). [method sheet 16.4]
+/// The tension of the particle's own film and that toward other regions, per interface tension, where gamma of film of
+/// other regions lies at the particle: 1 where two films coincide, more where three bubbles meet. Both follow from one
+/// energy, sigma a (2 - f): [method sheet 16.4; there gamma ended at 1, which is no energy's]
+///
+///   f = gamma + beta gamma (1 - gamma),  f' = (1 - beta) gamma^-6 beyond 1
 struct Cohesion {
     double own;    ///< tau / sigma = 2 - f - gamma f'
-    double other;  ///< f' = 1 + beta (1 - 2 gamma)
+    double other;  ///< f'
 };
 Cohesion cohesion(double gamma, double beta);
 

@@ -55,8 +55,10 @@ sim::Surface MelpSolver::surface() const {
     sim::Field pressure{"pressure", "Pa", 1, false, std::vector<double>(regions, 0.0)};
     for (const Gas& gas : gas_) {
         const auto r = static_cast<std::size_t>(gas.region);
+        if (!gas.closed) continue;
         closed.values[r] = 1.0;
         target.values[r] = input_.films->mesh.regions[static_cast<mesh::RegionId>(r)].target_volume;
+        if (gas.held) target.values[r] = gas.amount / options_.outside_pressure;  // half a bubble: the scene names none
         pressure.values[r] = gas.gauge_pressure(options_.outside_pressure);
     }
     surface.region_fields = {std::move(closed), std::move(target), std::move(pressure)};
@@ -105,7 +107,7 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         const Vec3& n = geometry_.normal[i];
         const double v = dot(coarse_.velocity[i], n);
-        const double liquid = options_.liquid_density * films_.liquid_volume[i];
+        const double liquid = liquid_density() * films_.liquid_volume[i];
         kinetic += 0.5 * mass[i] * v * v + 0.5 * liquid * squared_norm(films_.along[i]);
         momentum += liquid * (v * n + films_.along[i]);
         surface += 2.0 * films_.tension[i] * geometry_.area[i];
@@ -119,11 +121,11 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
                               std::accumulate(even_.begin(), even_.end(), 0.0, [](double total, const EvenFilm& film) {
                                   return total + film.surfactant;
                               });
-    double gas = 0.0, work = 0.0, volume_error = 0.0;
-    const std::vector<double> volume = particle_volumes(coarse_, geometry_, gas_);
+    double gas = 0.0, volume_error = 0.0;
+    const std::vector<double> volume = particle_volumes(coarse_, geometry_, rims_now_, gas_);
     for (std::size_t r = 0; r < gas_.size(); ++r) {
+        if (!gas_[r].closed) continue;
         gas += volume[r];
-        work -= gas_[r].amount * std::log(gas_[r].volume);
         volume_error = std::max(volume_error, std::abs(volume[r] / gas_[r].volume - 1.0));
     }
     const Spread film = spread_of(films_.thickness, geometry_.area);
@@ -133,7 +135,7 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
         {"particle_area", "m^2", sum(geometry_.area), "of the films, summed over coarse particles"},
         {"particle_volume", "m^3", gas, "of all bubbles, summed over coarse particles"},
         {"swept_volume_error", "-", volume_error, "largest relative difference of that and what the films have swept"},
-        {"liquid_mass", "kg", options_.liquid_density * liquid, "of all films"},
+        {"liquid_mass", "kg", liquid_density() * liquid, "of all films"},
         {"liquid_error", "-", initial_liquid_ > 0.0 ? liquid / initial_liquid_ - 1.0 : 0.0, "relative to the start"},
         {"surfactant_amount", "mol", surfactant, "of one interface of all films"},
         {"momentum_x", "kg m/s", momentum[0], "of the films"},
@@ -164,21 +166,21 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
 std::vector<sim::Scalar> MelpSolver::characteristic_numbers() const {
     const Start start = start_particles(*input_.films, options_, input_.seed);
     const film::Material& material = input_.films->material;
-    const double mass = options_.liquid_density * material.thickness;
-    const double elasticity = 2.0 * law_.thermal_energy() * options_.surfactant_concentration;
+    const double mass = liquid_density() * material.thickness;
+    const double elasticity = 2.0 * film::elasticity(material);
     const double gravity = norm(material.gravity);
     return {
         {"film_tension", "N/m", material.film_tension(), "twice the surface tension"},
         {"film_mass", "kg/m^2", mass, "per area"},
-        {"bubbles", "-", static_cast<double>(start.gas.size()), "closed regions"},
+        {"films", "-", static_cast<double>(start.gas.size()), "bubbles and films on wires"},
         {"coarse_particles", "-", static_cast<double>(start.coarse.size()), "at the start"},
         {"fine_particles", "-", static_cast<double>(start.fine.size()), "at the start"},
         {"spacing", "m", start.spacing, "of coarse particles"},
         {"support_radius", "m", options_.support_radius * start.spacing, "of the kernels"},
         {"membrane_wave_speed", "m/s", std::sqrt(material.film_tension() / mass),
          "across the film; of the rim of a hole too"},
-        {"elastic_wave_speed", "m/s", std::sqrt(elasticity / mass), "of thickness waves along the film (Marangoni)"},
-        {"drainage_rate", "1/m", gravity > 0.0 && elasticity > 0.0 ? mass * gravity / elasticity : 0.0,
+        {"elastic_wave_speed", "m/s", film::elastic_wave_speed(material), "of thickness waves along the film (Marangoni)"},
+        {"drainage_rate", "1/m", mass * gravity / elasticity,
          "a film at rest under gravity is thinner by exp(- this * height)"},
         {"slowest_period", "s", slowest_period(start.gas), "of the smallest bubble"},
         {"swing_step", "s",

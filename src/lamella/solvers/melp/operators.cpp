@@ -25,6 +25,28 @@ Vec3 weighted_gradient(const Geometry& g, std::span<const Vec3> x, std::size_t i
     return (0.5 * g.area[j] * g.neighbors.same.laplacian[k]) * (x[j] - x[i]);
 }
 
+/// add(i, k) for every picture k that particle i sees.
+template <class Add>
+void add_over_images(const Geometry& g, Add&& add) {
+    if (g.images.empty()) return;
+    parallel_blocks(g.size(), 256, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            for (std::size_t k = g.images.begin(i); k < g.images.end(i); ++k) add(i, k);
+    });
+}
+
+Vec3 image_gradient(const Geometry& g, std::span<const Vec3> x, std::size_t i, std::size_t k) {
+    return (0.5 * g.area[g.images.index[k]] * g.images.laplacian[k]) * (g.images.place[k] - x[i]);
+}
+
+/// The velocity of picture k, and the vector there without the motion of the rim.
+Vec3 image_of(const Geometry& g, std::span<const Vec3> w, std::size_t k) {
+    return g.images.mirrors[g.images.mirror[k]].velocity(w[g.images.index[k]]);
+}
+Vec3 turned(const Geometry& g, std::span<const Vec3> w, std::size_t k) {
+    return g.images.mirrors[g.images.mirror[k]].map * w[g.images.index[k]];
+}
+
 }  // namespace
 
 std::vector<Vec3> gradient(const Geometry& g, std::span<const Vec3> x, std::span<const double> q) {
@@ -40,8 +62,14 @@ std::vector<Tensor> gradient(const Geometry& g, std::span<const Vec3> x, std::sp
         const Vec3 along = weighted_gradient(g, x, i, j, k);
         for (std::size_t c = 0; c < 3; ++c) sum[c] += (w[j][c] - w[i][c]) * along;
     });
+    add_over_images(g, [&](std::size_t i, std::size_t k) {
+        const Vec3 along = image_gradient(g, x, i, k);
+        const Vec3 more = image_of(g, w, k) - w[i];
+        for (std::size_t c = 0; c < 3; ++c) result[i][c] += more[c] * along;
+    });
+    const std::vector<Tensor>& map = g.images.empty() ? g.gradient_map : g.mirrored_map;
     for (std::size_t i = 0; i < result.size(); ++i)
-        for (Vec3& row : result[i]) row = g.gradient_map[i] * row;
+        for (Vec3& row : result[i]) row = map[i] * row;
     return result;
 }
 
@@ -59,14 +87,23 @@ std::vector<double> laplacian(const Geometry& g, std::span<const double> q) {
 }
 
 std::vector<Vec3> unevenness(const Geometry& g, std::span<const Vec3> x) {
-    return sum_over_neighbors<Vec3>(
+    auto result = sum_over_neighbors<Vec3>(
         g, [&](Vec3& sum, std::size_t i, std::size_t j, std::size_t k) { sum += weighted_gradient(g, x, i, j, k); });
+    add_over_images(g, [&](std::size_t i, std::size_t k) { result[i] += image_gradient(g, x, i, k); });
+    return result;
 }
 
-std::vector<Vec3> roughness(const Geometry& g, std::span<const Vec3> w) {
-    return sum_over_neighbors<Vec3>(g, [&](Vec3& sum, std::size_t i, std::size_t j, std::size_t k) {
+std::vector<Vec3> roughness(const Geometry& g, std::span<const Vec3> w, Beyond beyond) {
+    auto result = sum_over_neighbors<Vec3>(g, [&](Vec3& sum, std::size_t i, std::size_t j, std::size_t k) {
         sum += (g.area[j] * g.neighbors.same.weight[k]) * (w[i] - w[j]);
     });
+    const auto picture = [&](std::size_t k) {
+        return beyond == Beyond::kVelocity ? image_of(g, w, k) : turned(g, w, k);
+    };
+    add_over_images(g, [&](std::size_t i, std::size_t k) {
+        result[i] += (g.area[g.images.index[k]] * g.images.weight[k]) * (w[i] - picture(k));
+    });
+    return result;
 }
 
 }  // namespace lamella::melp

@@ -15,7 +15,7 @@ namespace lamella::melp {
 /// @param q  per coarse particle  @returns  in the unit of q, per meter
 std::vector<Vec3> gradient(const Geometry& geometry, std::span<const Vec3> position, std::span<const double> q);
 
-/// The gradients of the components of a vector, one row per component.
+/// The gradients of the components of a velocity, one row per component. Beyond rims films move as their pictures.
 std::vector<Tensor> gradient(const Geometry& geometry, std::span<const Vec3> position, std::span<const Vec3> w);
 
 /// (div w)_i = sum_j a_j (w_j - w_i) . G_i grad W_ij of a full velocity [1/s]. With a part along the normal the film
@@ -25,10 +25,12 @@ std::vector<double> divergence(const Geometry& geometry, std::span<const Vec3> p
 /// (lap q)_i = sum_j a_j (q_j - q_i) * 2 |grad W_ij| / d_ij. Symmetric when multiplied with a_i.
 std::vector<double> laplacian(const Geometry& geometry, std::span<const double> q);
 
-/// sum_j a_j grad W_ij: zero where particles are evenly spread; at an edge it points into the film [1/m].
+/// sum_j a_j grad W_ij: zero where particles are evenly spread; at a free edge it points into the film [1/m].
 std::vector<Vec3> unevenness(const Geometry& geometry, std::span<const Vec3> position);
 
+/// What a vector field is beyond rims: a velocity, which moving rims add to, or a difference of velocities.
+enum class Beyond { kVelocity, kDifference };
 /// w minus its average over the kernel: keeps only what varies from particle to particle.
-std::vector<Vec3> roughness(const Geometry& geometry, std::span<const Vec3> w);
+std::vector<Vec3> roughness(const Geometry& geometry, std::span<const Vec3> w, Beyond beyond);
 
 }  // namespace lamella::melp

@@ -5,8 +5,23 @@
 
 namespace lamella::melp {
 
+/// What the rims of films on wires are.
+enum class RimHold {
+    kWire,      ///< held at their places, the same air on both sides
+    kPlate,     ///< held on a plate that closes in the gas
+    kWetPlate,  ///< sliding on such a plate
+};
+/// What surfactant films start with.
+enum class StartSurfactant {
+    kProportional,  ///< to the thickness
+    kUniform,       ///< the same everywhere
+};
+
 /// How films differ from even, resting ones at the start.
 struct StartOptions {
+    double thickness_top = 0.0;
+    double thickness_bottom = 0.0;
+    StartSurfactant surfactant = StartSurfactant::kProportional;
     double thickness_noise = 0.0;
     double noise_length = 0.0;
     int noise_octaves = 2;
@@ -15,8 +30,16 @@ struct StartOptions {
 
     template <class Visitor>
     void visit(Visitor&& option) {
+        option("thickness_top", thickness_top, sim::at_least(0.0),
+               {"where a film is highest, linear in height down to thickness_bottom; 0: material.thickness", "length"});
+        option("thickness_bottom", thickness_bottom, sim::at_least(0.0),
+               {"where it is lowest; 0: material.thickness", "length"});
+        option("surfactant", surfactant,
+               sim::choices<StartSurfactant>(
+                   {{"proportional", StartSurfactant::kProportional}, {"uniform", StartSurfactant::kUniform}}),
+               {"of films of uneven thickness: proportional to it, or the same everywhere"});
         option("thickness_noise", thickness_noise, sim::between(0.0, 1.2),
-               {"amplitude of the first octave, over the thickness; surfactant goes with the liquid", "-", "[Deng22]"});
+               {"amplitude of the first octave, over the thickness", "-", "[Deng22]"});
         option("noise_length", noise_length, sim::at_least(0.0),
                {"wave length of the first octave; 0: 1.4 times the largest bubble's radius", "length", "[Deng22]"});
         option("noise_octaves", noise_octaves, sim::between(1, 12),
@@ -29,15 +52,13 @@ struct StartOptions {
 
 /// [melp] of a scene.
 struct Options {
+    RimHold rim = RimHold::kWire;
     int fine_ratio = 16;
     double support_radius = 3.0;
     double theta = 0.51;
     double steps_per_period = 20.0;
     double cfl = 0.5;
     double largest_step = 0.0;
-    double liquid_density = 997.0;
-    double surfactant_concentration = 1e-7;
-    double temperature = 298.15;
     double outside_pressure = 101325.0;
     double air_mass = 0.0;
     double air_drag = 0.0;
@@ -49,13 +70,19 @@ struct Options {
     bool redistribution = true;
     double volume_rate = 20.0;
     double thickness_rate = 0.2;
+    int slow_motion = 15;
     double solver_tolerance = 1e-6;
     StartOptions start;
 
     template <class Visitor>
     void visit(Visitor&& option) {
+        option("rim", rim,
+               sim::choices<RimHold>(
+                   {{"wire", RimHold::kWire}, {"plate", RimHold::kPlate}, {"wet_plate", RimHold::kWetPlate}}),
+               {"what [[film]] ends on: wire: held, the same air on both sides; plate: held on a plate that closes in "
+                "the gas of a hemisphere; wet_plate: sliding on such a plate"});
         option("fine_ratio", fine_ratio, sim::between(0, 1000),
-               {"fine particles, the liquid, per coarse one; 0: films of even thickness without a flow in them", "-",
+               {"fine particles, the liquid, per coarse one; 0: films of even thickness and constant tension", "-",
                 "[Deng22]: 16 to 64"});
         option("support_radius", support_radius, sim::between(2.0, 6.0),
                {"of the kernels, in spacings of the coarse particles", "-", "[method sheet 16]"});
@@ -67,11 +94,6 @@ struct Options {
                {"of the slowest swing of the smallest bubble; 0: only how far particles move limits the step"});
         option("cfl", cfl, sim::between(0.01, 2.0), {"how far particles move in a step, in spacings"});
         option("largest_step", largest_step, sim::at_least(0.0), {"upper limit of the time step; 0: none", "time"});
-        option("liquid_density", liquid_density, sim::more_than(0.0), {"of the film", "mass/length^3"});
-        option("surfactant_concentration", surfactant_concentration, sim::at_least(0.0),
-               {"per interface, at which the tension is the material's; 0: no surfactant", "mol/m^2", "[Deng22]"});
-        option("temperature", temperature, sim::more_than(0.0),
-               {"of the film: surfactant lowers the tension by R T each", "K"});
         option("outside_pressure", outside_pressure, sim::more_than(0.0), {"of the air", "Pa"});
         option(
             "air_mass", air_mass, sim::between(0.0, 2.0),
@@ -99,6 +121,8 @@ struct Options {
                 "[method sheet 16.2]"});
         option("thickness_rate", thickness_rate, sim::at_least(0.0),
                {"at which the thickness of fine particles follows that of the coarse ones", "1/time", "[Deng22]"});
+        option("slow_motion", slow_motion, sim::between(1, 1000),
+               {"so many times as many frames while a film bursts", "-", "[Deng22]"});
         option("solver_tolerance", solver_tolerance, sim::strictly_between(0.0, 0.1),
                {"residual of the linear systems, relative"});
         option.group("start", start, "how films differ from even, resting ones at the start");

@@ -3,8 +3,10 @@
 #include "lamella/core/vec.h"
 #include "lamella/solvers/melp/tensor.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 namespace lamella::melp {
@@ -57,16 +59,22 @@ struct FineParticles {
     }
 };
 
-/// Gas that films close in. Isothermal, ideal, of one pressure.
+/// A region of films and the gas that they close in, if they do: isothermal, ideal, of one pressure.
 struct Gas {
     std::int32_t region = 0;   ///< its number in the scene
     double amount = 0.0;       ///< pressure * volume, constant [J]
     double volume = 0.0;       ///< what the films have swept; follows the particles' own volume slowly [m^3]
     double calibration = 1.0;  ///< true volume at the start / the particles' own volume then
-    bool closed = true;        ///< false: a film on a wire, the same air on both sides
+    bool closed = true;        ///< false: a film on a wire or one that has burst, the same air on both sides
+    bool held = false;         ///< by rims: it does not fly
+    bool burst = false;        ///< its film has a hole
+    double film_radius = 0.0;  ///< of the disk that has the area of a film without gas [m]
 
     /// Above that of the outside air [Pa].
     double gauge_pressure(double outside) const { return closed ? amount / volume - outside : 0.0; }
+
+    /// Of the bubble, or of half a one on a plate, or of a disk as large as an open film [m].
+    double radius() const { return closed ? std::cbrt((held ? 1.5 : 0.75) * volume / std::numbers::pi) : film_radius; }
 };
 
 }  // namespace lamella::melp

@@ -4,8 +4,10 @@
 #include "lamella/solvers/melp/films.h"
 #include "lamella/solvers/melp/options.h"
 #include "lamella/solvers/melp/particles.h"
+#include "lamella/solvers/melp/rims.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace lamella::melp {
@@ -16,15 +18,19 @@ struct Start {
     FineParticles fine;
     std::vector<Gas> gas;        ///< per region of particles
     std::vector<EvenFilm> even;  ///< per region of particles
+    Rims rims;                   ///< what holds films that are not closed
     double spacing = 0.0;        ///< of the coarse particles: sqrt(area / number) [m]
 };
 
 /// Every closed region of the problem gets particles on all of its surface, normals outward; a film between two of them
 /// so has two layers. Spheres get Fibonacci's spiral, which is even to 0.1 % [method sheet 16.1], other shapes the
-/// vertices of their mesh. Gas has the pressure that the virial theorem gives: p - p_out = 2/3 film tension * area /
-/// volume, 4 sigma / R for a sphere.
+/// vertices of their mesh. Films on wires get particles as OpenFilm says. Gas has the pressure that the virial theorem
+/// gives: p - p_out = 2/3 film tension * area / volume, 4 sigma / R for a sphere.
 /// @throws InputError  films that this solver does not know, or no bubble
 Start start_particles(const film::Problem& films, const Options& options, std::uint64_t seed);
+
+/// What holds the films on wires of a scene: their regions of particles come after those of its bubbles.
+Rims start_rims(const film::Problem& films, const Options& options);
 
 /// @throws InputError  films that this solver does not know, or several bubbles that it could not follow through a
 /// contact
@@ -34,10 +40,12 @@ void refuse_unknown_films(const film::Problem& films, const Options& options);
 /// by the golden angle from the one before.
 std::vector<Vec3> fibonacci_sphere(std::size_t count);
 
-/// The volume that closes in under the particles of each region, sum a (x - o) . n / 3 about their center o, times the
-/// calibration of its gas [m^3].
+/// The volume that each region's films close in: within the triangles between their particles, less half of what they share with
+/// others; of films that stand on a plate sum a (x - o) . n / 3 about a point o of the plate. Times the calibration of its gas
+/// [m^3]; without meaning for films without gas.
 std::vector<double> particle_volumes(const CoarseParticles& coarse,
                                      const Geometry& geometry,
+                                     std::span<const RimPiece> rims,
                                      const std::vector<Gas>& gas);
 
 }  // namespace lamella::melp

@@ -11,6 +11,7 @@ namespace lamella::melp {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
+constexpr std::uint32_t kNobody = 0xffffffffU;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 /// The same triangle with its smallest corner first.
@@ -29,7 +30,6 @@ std::vector<std::uint32_t> delaunay_ring(std::span<const Vec3> position,
         double u, v;
         std::uint32_t next;  // whose bisector the side after this corner lies on
     };
-    constexpr std::uint32_t kNobody = 0xffffffffU;
     const double far = same.kernel.support_radius;
     std::vector<Corner> cell{{-far, -far, kNobody}, {far, -far, kNobody}, {far, far, kNobody}, {-far, far, kNobody}},
         cut;
@@ -62,7 +62,6 @@ std::vector<std::uint32_t> delaunay_ring(std::span<const Vec3> position,
 
 /// Triangles around particle i, nobody's sides left out.
 void append_star(std::uint32_t i, const std::vector<std::uint32_t>& ring, std::vector<Triangle>& found) {
-    constexpr std::uint32_t kNobody = 0xffffffffU;
     for (std::size_t k = 0; k < ring.size(); ++k) {
         const std::uint32_t a = ring[k], b = ring[(k + 1) % ring.size()];
         if (a != kNobody && b != kNobody && a != b) found.push_back(turned({i, a, b}));
@@ -136,6 +135,22 @@ Triangles surface_triangles(const CoarseParticles& coarse, const Geometry& geome
     constexpr std::size_t kLongestHole = 8;
     builder.close_holes(kLongestHole);
     return builder.take();
+}
+
+double star_volume(const CoarseParticles& coarse, const Geometry& geometry, std::size_t i, const Vec3& center) {
+    const std::vector<std::uint32_t> ring =
+        delaunay_ring(coarse.position, geometry.normal[i], geometry.neighbors.same, i);
+    const std::vector<Vec3>&x = coarse.position, &n = geometry.normal;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+        const std::uint32_t a = ring[k], b = ring[(k + 1) % ring.size()];
+        if (a == kNobody || b == kNobody || a == b) continue;
+        const Vec3 area = 0.5 * cross(x[a] - x[i], x[b] - x[i]);
+        const double bulge =
+            dot(n[a] - n[i], x[a] - x[i]) + dot(n[b] - n[a], x[b] - x[a]) + dot(n[i] - n[b], x[i] - x[b]);
+        sum += dot(x[i] - center, area) / 3.0 + norm(area) * bulge / 24.0;
+    }
+    return sum / 3.0;
 }
 
 std::size_t open_edges(const Triangles& triangles) {

@@ -63,7 +63,8 @@ public:
     /// The patches may have moved on since the weights were found.
     void project(std::span<const Patch> patch, std::span<const Vec3> normal, FineParticles& fine) const;
 
-    /// Fine particles that no coarse one reaches.
+    /// Whether no coarse particle reaches a fine one; how many such there are.
+    bool stray(std::size_t p) const { return inverse_sum_[p] == 0.0; }
     std::size_t strays() const;
     /// Pairs of nonzero weight, and all places of the dense matrices: how well the blocks are filled.
     std::size_t pairs() const;

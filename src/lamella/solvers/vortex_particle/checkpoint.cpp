@@ -45,7 +45,9 @@ void read_column(sim::StateReader& in, const std::string& name, std::size_t coun
 void read_column(sim::StateReader& in, const std::string& name, std::size_t count, std::vector<Vec3>& column) {
     read_vectors(in, name, count, column);
 }
-void read_column(sim::StateReader& in, const std::string& name, std::size_t count,
+void read_column(sim::StateReader& in,
+                 const std::string& name,
+                 std::size_t count,
                  std::vector<std::array<double, 3>>& column) {
     std::vector<double> values;
     in.read(name, 3 * count, values);
@@ -120,7 +122,8 @@ void VortexParticleSolver::load(sim::StateReader& in) {
         read_column(in, fmt::format("particle/{}", name), static_cast<std::size_t>(count), column);
     });
     for (const std::uint32_t t : particles_.triangle)
-        if (t >= surface_.triangles()) throw InputError(fmt::format("a particle is in triangle {}, which does not exist", t));
+        if (t >= surface_.triangles())
+            throw InputError(fmt::format("a particle is in triangle {}, which does not exist", t));
     bins_ = sort_by_triangle(particles_, surface_.triangles());
     read_column(in, "hole_circulation", surface_.loops.size(), hole_circulation_);
     read_column(in, "velocity", surface_.triangles(), velocity_);

@@ -88,7 +88,9 @@ std::vector<double> FlowSolver::Poisson::spread(const std::vector<double>& x) co
     return at_vertices;
 }
 
-std::vector<double> FlowSolver::Poisson::solve(const Surface& s, const std::vector<double>& right, bool lagging,
+std::vector<double> FlowSolver::Poisson::solve(const Surface& s,
+                                               const std::vector<double>& right,
+                                               bool lagging,
                                                int& iterations) const {
     std::vector<double> x = sums(right);
     if (x.empty()) return spread(x);
@@ -107,7 +109,8 @@ std::vector<double> FlowSolver::Poisson::solve(const Surface& s, const std::vect
         y = p;
         factors.solve(y);
     };
-    const auto done = linalg::preconditioned_conjugate_gradient(apply, precondition, b, x, kLaggingTolerance, kMostIterations);
+    const auto done =
+        linalg::preconditioned_conjugate_gradient(apply, precondition, b, x, kLaggingTolerance, kMostIterations);
     iterations = std::max(iterations, done.iterations);
     return spread(x);
 }
@@ -155,15 +158,20 @@ ShiftedStiffness::ShiftedStiffness(const Surface& s) : matrix_(s, all_vertices(s
     factors_.analyze(matrix_.matrix());
 }
 
-void ShiftedStiffness::factorize(const Surface& s, double scale, std::span<const double> weight,
+void ShiftedStiffness::factorize(const Surface& s,
+                                 double scale,
+                                 std::span<const double> weight,
                                  std::span<const double> mass) {
     matrix_.assemble(s, scale, weight, mass);
     if (!factors_.factorize(matrix_.matrix()))
         throw NumericalError("vortex_particle: a diffusion matrix of the film is singular");
 }
 
-int ShiftedStiffness::solve_lagging(const Surface& s, double scale, std::span<const double> weight,
-                                    std::span<const double> mass, std::vector<double>& x) const {
+int ShiftedStiffness::solve_lagging(const Surface& s,
+                                    double scale,
+                                    std::span<const double> weight,
+                                    std::span<const double> mass,
+                                    std::vector<double>& x) const {
     const std::vector<double> b = x;
     factors_.solve(x);
     const auto apply = [&](const std::vector<double>& p, std::vector<double>& y) {
@@ -175,7 +183,8 @@ int ShiftedStiffness::solve_lagging(const Surface& s, double scale, std::span<co
         y = p;
         factors_.solve(y);
     };
-    return linalg::preconditioned_conjugate_gradient(apply, precondition, b, x, kLaggingTolerance, kMostIterations).iterations;
+    return linalg::preconditioned_conjugate_gradient(apply, precondition, b, x, kLaggingTolerance, kMostIterations)
+        .iterations;
 }
 
 }  // namespace lamella::vortex_particle

@@ -14,7 +14,8 @@ namespace lamella::vortex_particle {
 
 /// The two Poisson equations of a film, factored once [method sheet 5.6, 10]:
 ///
-///     K Psi = -Omega   Psi is constant along each wall: 0 on the outer one, and on the wall around a hole such that the
+///     K Psi = -Omega   Psi is constant along each wall: 0 on the outer one, and on the wall around a hole such that
+///     the
 ///                      circulation around it is what is given (this is the harmonic part of the flow)
 ///     K Phi = -D       walls let nothing through
 ///
@@ -34,7 +35,8 @@ public:
     /// @param circulation       Omega_i [m^2/s]; sums to zero on a component without walls
     /// @param hole_circulation  one per loop of the surface, counterclockwise around the hole seen from the tip of the
     ///                          normal; outer loops are not read
-    std::vector<double> stream_function(const Surface& s, std::span<const double> circulation,
+    std::vector<double> stream_function(const Surface& s,
+                                        std::span<const double> circulation,
                                         std::span<const double> hole_circulation) const;
     /// @param outflow  D_i [m^2/s]; sums to zero on each component
     std::vector<double> potential(const Surface& s, std::span<const double> outflow) const;
@@ -46,7 +48,10 @@ private:
 
         Poisson(const Surface& s, std::vector<int> unknown);
         void factorize(const Surface& s);
-        std::vector<double> solve(const Surface& s, const std::vector<double>& right, bool lagging, int& iterations) const;
+        std::vector<double> solve(const Surface& s,
+                                  const std::vector<double>& right,
+                                  bool lagging,
+                                  int& iterations) const;
 
     private:
         std::vector<double> sums(std::span<const double> at_vertices) const;
@@ -67,7 +72,10 @@ public:
     void solve(std::span<double> x) const { factors_.solve(x); }
     /// The same where film, mass, scale or weights are others by now than those that were factored.
     /// @returns  iterations
-    int solve_lagging(const Surface& s, double scale, std::span<const double> weight, std::span<const double> mass,
+    int solve_lagging(const Surface& s,
+                      double scale,
+                      std::span<const double> weight,
+                      std::span<const double> mass,
                       std::vector<double>& x) const;
 
 private:

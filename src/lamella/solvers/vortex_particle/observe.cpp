@@ -109,6 +109,8 @@ sim::Frame VortexParticleSolver::frame() const {
         frame.points.fields.push_back({"thickness", "m", 1, false, std::move(thickness)});
         frame.points.fields.push_back(vectors("velocity", "m/s", particles_.velocity));
     }
+    for (const film::Solid& solid : input_.films->solids)
+        frame.solids.push_back({solid.center_at(time_), solid.radius});
     frame.scalars = scalars();
     return frame;
 }
@@ -132,7 +134,8 @@ std::vector<sim::Scalar> VortexParticleSolver::scalars() const {
     };
     const double volume = sum(particles_.volume), kinetic = kinetic_energy();
     const double gravity = -material.liquid_density * parallel_sum(particles_.size(), [&](std::size_t p) {
-        return particles_.volume[p] * dot(material.gravity, surface_.point(particles_.triangle[p], particles_.place[p]));
+        return particles_.volume[p] *
+               dot(material.gravity, surface_.point(particles_.triangle[p], particles_.place[p]));
     });
     std::size_t fewest = particles_.size(), most = 0;
     for (std::size_t t = 0; t < surface_.triangles(); ++t) {
@@ -151,7 +154,8 @@ std::vector<sim::Scalar> VortexParticleSolver::scalars() const {
         {"angular_impulse_z", "m^3/s", impulse[2], "integral of vorticity times position"},
         {"liquid_volume", "m^3", volume, "of all particles: constant"},
         {"surfactant_amount", "mol", 2.0 * sum(particles_.amount), "on both interfaces: constant"},
-        {"mesh_volume_error", "-", on_mesh / volume - 1.0, "of the thickness on the mesh against the particles' liquid"},
+        {"mesh_volume_error", "-", on_mesh / volume - 1.0,
+         "of the thickness on the mesh against the particles' liquid"},
         {"max_velocity", "m/s", fastest, "along the film"},
         {"max_mach", "-", fastest / film::elastic_wave_speed(material), "that over the speed of elastic waves"},
         {"time_step", "s", step_, "the last one"},
@@ -178,11 +182,16 @@ std::vector<sim::Scalar> VortexParticleSolver::characteristic_numbers() const {
         {"elasticity", "N/m", film::elasticity(material), "of one interface"},
         {"elastic_wave_speed", "m/s", c, "of waves of thickness"},
         {"film_viscosity", "m^2/s", viscosity_, "of liquid and interfaces"},
-        {"drainage_exponent", "1/m", norm(material.gravity) / (c * c), "the thickness of a film at rest falls with height by this"},
+        {"drainage_exponent", "1/m", norm(material.gravity) / (c * c),
+         "the thickness of a film at rest falls with height by this"},
         {"vertices", "-", static_cast<double>(surface_.vertices()), "of the films"},
         {"triangles", "-", triangles, "of the films"},
         {"particles", "-", triangles * options_.particles_per_triangle, "at the start"},
-        {"holes", "-", static_cast<double>(surface_.loops.size()) - static_cast<double>(std::count_if(surface_.loops.begin(), surface_.loops.end(), [](const BoundaryLoop& l) { return l.outer; })), "that the flow may go around"},
+        {"holes", "-",
+         static_cast<double>(surface_.loops.size()) -
+             static_cast<double>(std::count_if(surface_.loops.begin(), surface_.loops.end(),
+                                               [](const BoundaryLoop& l) { return l.outer; })),
+         "that the flow may go around"},
         {"mean_edge", "m", surface_.mean_edge, "of a triangle"},
         {"elastic_step", "s", surface_.mean_edge / c, "steps longer than two of it damp waves of thickness"},
     };

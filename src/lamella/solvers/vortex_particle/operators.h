@@ -9,8 +9,8 @@
 //     Omega_i     =  sum_t 1/2 u_t . e_i(t)              about the integral of phi_i omega, e_i opposite to i
 //     K_ij        =  sum_t w_t A_t grad phi_i . grad phi_j
 //
-// They fit together to the last bit but rounding: div grad p = -K p everywhere; curl(J grad p) = -K p, div(J grad p) = 0
-// and curl(grad p) = 0 inside; the D_i sum to zero; so do the Omega_i where there are no walls [method sheet 4].
+// They fit together to the last bit but rounding: div grad p = -K p everywhere; curl(J grad p) = -K p, div(J grad p) =
+// 0 and curl(grad p) = 0 inside; the D_i sum to zero; so do the Omega_i where there are no walls [method sheet 4].
 
 #include "lamella/linalg/symmetric_matrix.h"
 #include "lamella/solvers/vortex_particle/surface.h"
@@ -41,8 +41,8 @@ std::vector<double> closed_curl(const Surface& s, std::span<const Vec3> u);
 ///
 ///     dOmega_i / dt = -(2 R T / rho) sum over the loop of (Gamma_k - Gamma_j) / L(eta_j, eta_k)
 ///
-/// with L the logarithmic mean, so that Gamma = c eta drives nothing; sums to zero without walls. Of the loop around all
-/// triangles at i, whose integrand is known along edges, a third is taken: the share of the cell in that area. (The
+/// with L the logarithmic mean, so that Gamma = c eta drives nothing; sums to zero without walls. Of the loop around
+/// all triangles at i, whose integrand is known along edges, a third is taken: the share of the cell in that area. (The
 /// published eq. 14 has a length too much.) [Tao24, eq. 14; method sheet 5.3]
 /// @param strength  2 R T / rho [m^2/s^2 per mol/m^3]
 std::vector<double> surfactant_torque(const Surface& s,
@@ -56,8 +56,8 @@ std::vector<double> wall_torque(const Surface& s,
                                 std::span<const double> thickness,
                                 double strength);
 
-/// Velocity at vertices: the mean of the triangles around, weighted with area, in the tangent plane; on a wall that lets
-/// it slip along that, on one that does not zero.
+/// Velocity at vertices: the mean of the triangles around, weighted with area, in the tangent plane; on a wall that
+/// lets it slip along that, on one that does not zero.
 std::vector<Vec3> vertex_velocity(const Surface& s, std::span<const Vec3> u);
 
 /// Gaussian curvature of each triangle [1/m^2]: the mean of its vertices' angle defects over their areas; 0 at walls.
@@ -85,6 +85,7 @@ private:
 };
 
 /// y += scale K_w x.
-void add_stiffness(const Surface& s, double scale, std::span<const double> weight, std::span<const double> x, std::span<double> y);
+void add_stiffness(
+    const Surface& s, double scale, std::span<const double> weight, std::span<const double> x, std::span<double> y);
 
 }  // namespace lamella::vortex_particle

@@ -7,7 +7,8 @@
 namespace lamella::vortex_particle {
 
 enum class Tracer {
-    kExtrapolated,  ///< with the velocity of the middle of the step, from the last two: second order [method sheet 12.11]
+    kExtrapolated,  ///< with the velocity of the middle of the step, from the last two: second order [method
+                    ///< sheet 12.11]
     kFrozen,        ///< with that of its beginning, as published: first order, gains energy
 };
 enum class Viscosity {
@@ -48,9 +49,10 @@ struct StartOptions {
                                                 {"proportional", SurfactantProfile::kProportional},
                                                 {"balanced", SurfactantProfile::kBalanced}}),
                {"proportional: to the thickness; balanced: such that its gradient carries the film's weight"});
-        option("swirls_in_balance", swirls_in_balance,
-               {"true: liquid and surfactant are less in the cores of vortices, as much as holds them together; else they"
-                " thin at once, which sends waves out"});
+        option(
+            "swirls_in_balance", swirls_in_balance,
+            {"true: liquid and surfactant are less in the cores of vortices, as much as holds them together; else they"
+             " thin at once, which sends waves out"});
     }
 };
 
@@ -66,8 +68,10 @@ struct NoiseOptions {
     void visit(Visitor&& option) {
         option("thickness", thickness, sim::between(0.0, 0.9), {"amplitude, relative"});
         option("surfactant", surfactant, sim::between(0.0, 0.9), {"amplitude, relative"});
-        option("shape", shape, sim::at_least(0.0), {"of films that move: height of the noise along the normal", "length"});
-        option("frequency", frequency, sim::at_least(0.0), {"0: eight over the square root of the film's area", "1/length"});
+        option("shape", shape, sim::at_least(0.0),
+               {"of films that move: height of the noise along the normal", "length"});
+        option("frequency", frequency, sim::at_least(0.0),
+               {"0: eight over the square root of the film's area", "1/length"});
         option("octaves", octaves, sim::between(1, 10), {"each of twice the frequency and half the amplitude"});
     }
 };
@@ -94,9 +98,11 @@ struct StreamOptions {
 
     template <class Visitor>
     void visit(Visitor&& option) {
-        option("velocity", velocity, sim::any_number(),
-               {"[0, 0, 0]: the film is closed; else it comes in at the side that this points away from and leaves at the"
-                " opposite one, of a rectangle", "length/time"});
+        option(
+            "velocity", velocity, sim::any_number(),
+            {"[0, 0, 0]: the film is closed; else it comes in at the side that this points away from and leaves at the"
+             " opposite one, of a rectangle",
+             "length/time"});
         option("sponge", sponge, sim::between(0.0, 0.5),
                {"share of the film's length, before it leaves, in which vortices fade", "-", ""});
     }
@@ -130,7 +136,8 @@ struct Options {
 
     template <class Visitor>
     void visit(Visitor&& option) {
-        option("particles_per_triangle", particles_per_triangle, sim::between(1, 1000), {"at the start", "-", "[Tao24]"});
+        option("particles_per_triangle", particles_per_triangle, sim::between(1, 1000),
+               {"at the start", "-", "[Tao24]"});
         option("most_per_triangle", most_per_triangle, sim::at_least(0),
                {"more particles than that in a triangle merge; 0: four times particles_per_triangle"});
         option("rupture_thickness", rupture_thickness, sim::at_least(0.0),
@@ -141,8 +148,10 @@ struct Options {
         option("kernel_radius", kernel_radius, sim::between(1.0, 10.0), {"in longest edges; the paper's is 3"});
         option("tracer", tracer,
                sim::choices<Tracer>({{"extrapolated", Tracer::kExtrapolated}, {"frozen", Tracer::kFrozen}}),
-               {"velocity that particles move with; extrapolated: second order in time; frozen: first order, as published"});
-        option("incompressible", incompressible, {"true: the film keeps its thickness along the flow, whatever its surfactant"});
+               {"velocity that particles move with; extrapolated: second order in time; frozen: first order, as "
+                "published"});
+        option("incompressible", incompressible,
+               {"true: the film keeps its thickness along the flow, whatever its surfactant"});
         option("viscosity", viscosity,
                sim::choices<Viscosity>({{"surface", Viscosity::kSurface}, {"laplace", Viscosity::kLaplace}}),
                {"surface: of a curved sheet, which leaves rigid rotations alone; laplace: as published"});
@@ -153,13 +162,15 @@ struct Options {
         option("courant", courant, sim::more_than(0.0), {"edges that the fastest particle moves in a step, at most"});
         option("area_relaxation", area_relaxation, sim::at_least(0.0),
                {"rate at which particles' areas follow the room that they have; measured: 0 is best", "1/time"});
-        option("junction", junction,
-               sim::choices<Junction>({{"leaves", Junction::kLeaves}, {"sheets", Junction::kSheets}}),
-               {"films that bound two bubbles; leaves: each bubble has half of them, which flows on its own; sheets: one"
-                " flow per film (not built yet)"});
+        option(
+            "junction", junction,
+            sim::choices<Junction>({{"leaves", Junction::kLeaves}, {"sheets", Junction::kSheets}}),
+            {"films that bound two bubbles; leaves: each bubble has half of them, which flows on its own; sheets: one"
+             " flow per film (not built yet)"});
         option("leaf_exchange", leaf_exchange, sim::at_least(0.0),
                {"rate at which a leaf gives liquid and surfactant to the other one of its film where that has none; the"
-                " paper: 0.1 per step", "1/time", "[Tao24]"});
+                " paper: 0.1 per step",
+                "1/time", "[Tao24]"});
         option("velocity_blend", velocity_blend, sim::at_least(0.0),
                {"rate at which particles' velocity follows that of the mesh", "1/time"});
         option("solve_tolerance", solve_tolerance, sim::strictly_between(0.0, 1e-2),

@@ -26,8 +26,10 @@ double remove_gone(Particles& particles) {
     std::vector<std::size_t> kept;
     double liquid = 0.0;
     for (std::size_t p = 0; p < particles.size(); ++p) {
-        if (particles.triangle[p] != kGone) kept.push_back(p);
-        else liquid += particles.volume[p];
+        if (particles.triangle[p] != kGone)
+            kept.push_back(p);
+        else
+            liquid += particles.volume[p];
     }
     if (kept.size() == particles.size()) return 0.0;
     Particles::for_each_column(particles, [&](const char*, auto& column) {
@@ -94,7 +96,8 @@ void thin_out(const Surface& s, std::size_t begin, std::size_t end, std::size_t 
         for (std::size_t i = 0; i < here.size(); ++i)
             for (std::size_t j = i + 1; j < here.size(); ++j) {
                 const std::uint32_t t = particles.triangle[here[i]];
-                const double d = squared_norm(s.point(t, particles.place[here[i]]) - s.point(t, particles.place[here[j]]));
+                const double d =
+                    squared_norm(s.point(t, particles.place[here[i]]) - s.point(t, particles.place[here[j]]));
                 if (nearest < 0.0 || d < nearest) nearest = d, first = i, second = j;
             }
         join(here[first], here[second], particles);

@@ -17,13 +17,13 @@ inline constexpr std::uint32_t kGone = 0xffffffffU;  ///< the triangle of a part
 /// are constant, and its area follows the flow: thickness and concentration are what it has over its area, so the film
 /// gains and loses neither.
 struct Particles {
-    std::vector<std::uint32_t> triangle;          ///< ascending after sort_by_triangle
-    std::vector<std::array<double, 3>> place;     ///< barycentric coordinates in it
-    std::vector<double> circulation;              ///< Omega_p in [Tao24] [m^2/s]
-    std::vector<double> volume;                   ///< of liquid [m^3]
-    std::vector<double> amount;                   ///< of surfactant on one interface [mol]
-    std::vector<double> area;                     ///< [m^2]
-    std::vector<Vec3> velocity;                   ///< u_p in [Tao24] [m/s]
+    std::vector<std::uint32_t> triangle;       ///< ascending after sort_by_triangle
+    std::vector<std::array<double, 3>> place;  ///< barycentric coordinates in it
+    std::vector<double> circulation;           ///< Omega_p in [Tao24] [m^2/s]
+    std::vector<double> volume;                ///< of liquid [m^3]
+    std::vector<double> amount;                ///< of surfactant on one interface [mol]
+    std::vector<double> area;                  ///< [m^2]
+    std::vector<Vec3> velocity;                ///< u_p in [Tao24] [m/s]
 
     std::size_t size() const { return triangle.size(); }
 
@@ -66,12 +66,13 @@ Bins sort_by_triangle(Particles& particles, std::size_t triangles);
 /// Takes out those that have left the film. @returns the liquid that they had [m^3]
 double remove_gone(Particles& particles);
 
-/// Where a triangle has more than `most` particles, those closest to each other become one until it has no more: with the
-/// sum of what they have, at their center of mass, which hat functions cannot tell from both, and with their momentum.
+/// Where a triangle has more than `most` particles, those closest to each other become one until it has no more: with
+/// the sum of what they have, at their center of mass, which hat functions cannot tell from both, and with their
+/// momentum.
 void merge_crowds(const Surface& s, std::size_t most, Particles& particles, Bins& bins);
 
-/// Each triangle without particles gets one in its middle, half of the largest one of its neighbors: nothing is made and
-/// nothing lost. Where the neighbors are empty too it takes another round, of which there are a few.
+/// Each triangle without particles gets one in its middle, half of the largest one of its neighbors: nothing is made
+/// and nothing lost. Where the neighbors are empty too it takes another round, of which there are a few.
 void fill_empty_triangles(const Surface& s, Particles& particles, Bins& bins);
 
 /// `per_triangle` particles in each triangle, spread evenly by a sequence of low discrepancy with a start of its own in

@@ -53,7 +53,8 @@ Cover cover_of(const Surface& s, std::span<const Body> bodies) {
         const Vec3 x = s.point(t, kMiddle);
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             if (!bodies[b].in_film) continue;
-            const double share = std::clamp((bodies[b].radius - norm(x - bodies[b].center)) / s.edge_length(t), 0.0, 1.0);
+            const double share =
+                std::clamp((bodies[b].radius - norm(x - bodies[b].center)) / s.edge_length(t), 0.0, 1.0);
             if (share <= cover.share[t]) continue;
             cover.share[t] = share;
             cover.body[t] = static_cast<std::int32_t>(b);
@@ -69,7 +70,8 @@ double fastest(std::span<const film::Solid> solids) {
     return speed;
 }
 
-Grip::Grip(const Surface& s, Cover cover, std::vector<double> mass, std::span<Body> bodies, const Vec3& gravity, double dt)
+Grip::Grip(
+    const Surface& s, Cover cover, std::vector<double> mass, std::span<Body> bodies, const Vec3& gravity, double dt)
     : surface_(s),
       cover_(std::move(cover)),
       mass_(std::move(mass)),

@@ -13,12 +13,12 @@ namespace lamella::vortex_particle {
 
 /// A solid at one moment.
 struct Body {
-    double radius = 0.0;   ///< [m]
+    double radius = 0.0;  ///< [m]
     bool in_film = true;
     bool free = false;
-    double mass = 0.0;     ///< beyond that of the film that it covers [kg]
-    Vec3 center;           ///< [m]
-    Vec3 velocity, spin;   ///< [m/s], [rad/s]
+    double mass = 0.0;    ///< beyond that of the film that it covers [kg]
+    Vec3 center;          ///< [m]
+    Vec3 velocity, spin;  ///< [m/s], [rad/s]
     /// What the film did to it in the last step, the film that it covers counted with the solid; the torque about its
     /// center [N], [N m].
     Vec3 force, torque;
@@ -41,8 +41,8 @@ Cover cover_of(const Surface& s, std::span<const Body> bodies);
 /// The largest speed of any solid's surface that is told [m/s].
 double fastest(std::span<const film::Solid> solids);
 
-/// One step's hold of solids on the film. Momentum that they give to it they lose: free ones change their velocity in each
-/// sweep such that they have given what they lost,
+/// One step's hold of solids on the film. Momentum that they give to it they lose: free ones change their velocity in
+/// each sweep such that they have given what they lost,
 ///
 ///     mass (v - v_before - dt g) = -sum over sweeps of the integral of share rho eta (v - u)
 ///
@@ -50,7 +50,12 @@ double fastest(std::span<const film::Solid> solids);
 class Grip {
 public:
     /// @param mass  of the film in each triangle [kg]
-    Grip(const Surface& s, Cover cover, std::vector<double> mass, std::span<Body> bodies, const Vec3& gravity, double dt);
+    Grip(const Surface& s,
+         Cover cover,
+         std::vector<double> mass,
+         std::span<Body> bodies,
+         const Vec3& gravity,
+         double dt);
 
     /// What has to be added to `u` of triangles so that the film moves with the solids, where they cover it.
     /// @returns the largest speed that a whole triangle lacks [m/s]

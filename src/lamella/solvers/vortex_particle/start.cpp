@@ -35,7 +35,10 @@ double rossby_haurwitz(const film::Vortex& vortex, const Vec3& from_center) {
 
 /// Values of particles are corrected until they put `target` on the vertices.
 /// @param change  change(p, relative surplus to be made up for, density [per area] to be added)
-void fit_circulation(const Surface& s, const Transfer& transfer, const Bins& bins, const std::vector<double>& target,
+void fit_circulation(const Surface& s,
+                     const Transfer& transfer,
+                     const Bins& bins,
+                     const std::vector<double>& target,
                      Particles& particles) {
     const std::vector<double> area = transfer.deposit(s, particles, bins, particles.area);
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
@@ -61,7 +64,10 @@ void fit_areas(const Surface& s, const Transfer& transfer, const Bins& bins, Par
 /// What has to be added to Gamma at vertices so that (2 R T / rho) grad Gamma = eta a, as far as a gradient can be; its
 /// mean over each component is 0.
 /// @param acceleration  a, of triangles, along the film [m/s^2]
-std::vector<double> pulling_surfactant(const Surface& s, const FlowSolver& flow, const film::Problem& films, const Deposit& sum,
+std::vector<double> pulling_surfactant(const Surface& s,
+                                       const FlowSolver& flow,
+                                       const film::Problem& films,
+                                       const Deposit& sum,
                                        std::vector<Vec3> acceleration) {
     const double strength = 2.0 * film::thermal_energy(films.material) / films.material.liquid_density;
     for (std::size_t t = 0; t < s.triangles(); ++t) {
@@ -87,8 +93,8 @@ std::vector<Vec3> gravity_along(const Surface& s, const Vec3& g) {
 
 /// -(u . grad) u of the flow that the scene's vortices make in a film that keeps its area.
 std::vector<Vec3> outward_pull(const Surface& s, const FlowSolver& flow, std::span<const film::Vortex> vortices) {
-    const std::vector<Vec3> u = rotated_gradient(
-        s, flow.stream_function(s, vertex_circulation(s, vortices), hole_circulation(s, vortices)));
+    const std::vector<Vec3> u =
+        rotated_gradient(s, flow.stream_function(s, vertex_circulation(s, vortices), hole_circulation(s, vortices)));
     const std::vector<Vec3> smooth = vertex_velocity(s, u);
     std::vector<Vec3> pull(s.triangles());
     for (std::size_t t = 0; t < s.triangles(); ++t) {
@@ -98,10 +104,14 @@ std::vector<Vec3> outward_pull(const Surface& s, const FlowSolver& flow, std::sp
     return pull;
 }
 
-/// Gives particles the surfactant that carries the film's weight, or liquid and surfactant that hold swirls together: thinner
-/// in their cores [method sheet 5.10].
-void balance(const Surface& s, const Transfer& transfer, const Bins& bins, const film::Problem& films,
-             const StartOptions& options, Particles& particles) {
+/// Gives particles the surfactant that carries the film's weight, or liquid and surfactant that hold swirls together:
+/// thinner in their cores [method sheet 5.10].
+void balance(const Surface& s,
+             const Transfer& transfer,
+             const Bins& bins,
+             const film::Problem& films,
+             const StartOptions& options,
+             Particles& particles) {
     const bool weight = options.surfactant == SurfactantProfile::kBalanced;
     if (!weight && !options.swirls_in_balance) return;
     const FlowSolver flow(s);
@@ -112,8 +122,9 @@ void balance(const Surface& s, const Transfer& transfer, const Bins& bins, const
         for (std::size_t v = 0; v < factor.size(); ++v) {
             factor[v] = (from(v) + more[v]) / from(v);
             if (!(factor[v] > 0.0))
-                throw InputError("vortex_particle.start: there is not enough surfactant to carry the film or to hold its "
-                                 "vortices together; raise material.surfactant, or take a lower, thinner or slower film");
+                throw InputError(
+                    "vortex_particle.start: there is not enough surfactant to carry the film or to hold its "
+                    "vortices together; raise material.surfactant, or take a lower, thinner or slower film");
         }
         const std::vector<double> at = transfer.gather(s, particles, factor);
         for (std::size_t p = 0; p < particles.size(); ++p) {
@@ -122,11 +133,13 @@ void balance(const Surface& s, const Transfer& transfer, const Bins& bins, const
         }
     };
     if (weight)
-        scaled(pulling_surfactant(s, flow, films, sum, gravity_along(s, films.material.gravity)), [&](std::size_t) { return rest; },
-               false);
+        scaled(
+            pulling_surfactant(s, flow, films, sum, gravity_along(s, films.material.gravity)),
+            [&](std::size_t) { return rest; }, false);
     if (options.swirls_in_balance)
-        scaled(pulling_surfactant(s, flow, films, sum, outward_pull(s, flow, films.vortices)),
-               [&](std::size_t v) { return sum.amount[v] / sum.area[v]; }, true);
+        scaled(
+            pulling_surfactant(s, flow, films, sum, outward_pull(s, flow, films.vortices)),
+            [&](std::size_t v) { return sum.amount[v] / sum.area[v]; }, true);
 }
 
 }  // namespace
@@ -151,10 +164,14 @@ Start::Start(const Surface& s, const film::Problem& films, const StartOptions& o
 double Start::thickness(const Vec3& x) const {
     const double height = range_ > 0.0 ? (dot(x, up_) - low_) / range_ : 0.5;  // of the film's, 0 to 1
     switch (options_.thickness) {
-        case ThicknessProfile::kLinear: return bottom_ + height * (top_ - bottom_);
-        case ThicknessProfile::kStep: return height < 0.5 ? bottom_ : top_;
-        case ThicknessProfile::kCosine: return bottom_ + 0.5 * (1.0 - std::cos(kPi * height)) * (top_ - bottom_);
-        case ThicknessProfile::kUniform: break;
+        case ThicknessProfile::kLinear:
+            return bottom_ + height * (top_ - bottom_);
+        case ThicknessProfile::kStep:
+            return height < 0.5 ? bottom_ : top_;
+        case ThicknessProfile::kCosine:
+            return bottom_ + 0.5 * (1.0 - std::cos(kPi * height)) * (top_ - bottom_);
+        case ThicknessProfile::kUniform:
+            break;
     }
     return common_;
 }
@@ -176,9 +193,14 @@ double vorticity(std::span<const film::Vortex> vortices, const Vec3& x, const Ve
             case Profile::kTaylor:
                 sum += vortex.speed / vortex.radius * (2.0 - q) * std::exp(0.5 * (1.0 - q));
                 break;
-            case Profile::kRotation: sum += 2.0 * vortex.rate * dot(vortex.axis, n); break;
-            case Profile::kRossbyHaurwitz: sum += rossby_haurwitz(vortex, d); break;
-            case Profile::kHole: break;
+            case Profile::kRotation:
+                sum += 2.0 * vortex.rate * dot(vortex.axis, n);
+                break;
+            case Profile::kRossbyHaurwitz:
+                sum += rossby_haurwitz(vortex, d);
+                break;
+            case Profile::kHole:
+                break;
         }
     }
     return sum;
@@ -238,14 +260,16 @@ Particles start_particles(const Surface& s,
     const double frequency = options.noise.frequency > 0.0 ? options.noise.frequency : 8.0 / std::sqrt(s.total_area);
     const auto noisy = [&](double amplitude, const Vec3& x, std::uint64_t which) {
         return amplitude == 0.0 ? 1.0
-                                : std::max(0.1, 1.0 + amplitude * film::gradient_noise(frequency * x, 2 * seed + which, options.noise.octaves));
+                                : std::max(0.1, 1.0 + amplitude * film::gradient_noise(frequency * x, 2 * seed + which,
+                                                                                       options.noise.octaves));
     };
     const double surfactant = fresh.rest_surfactant();
     for (std::size_t p = 0; p < particles.size(); ++p) {
         const std::size_t t = particles.triangle[p];
         const Vec3 x = s.point(t, particles.place[p]);
         const double share_of_film = s.share[t];
-        particles.volume[p] = share_of_film * particles.area[p] * fresh.thickness(x) * noisy(options.noise.thickness, x, 0);
+        particles.volume[p] =
+            share_of_film * particles.area[p] * fresh.thickness(x) * noisy(options.noise.thickness, x, 0);
         const double share = options.start.surfactant == SurfactantProfile::kProportional
                                  ? particles.volume[p] / (share_of_film * particles.area[p]) / films.material.thickness
                                  : 1.0;
@@ -253,8 +277,7 @@ Particles start_particles(const Surface& s,
         particles.circulation[p] = particles.area[p] * vorticity(films.vortices, x, s.normal[t]);
     }
     balance(s, transfer, bins, films, options.start, particles);
-    if (!films.vortices.empty())
-        fit_circulation(s, transfer, bins, vertex_circulation(s, films.vortices), particles);
+    if (!films.vortices.empty()) fit_circulation(s, transfer, bins, vertex_circulation(s, films.vortices), particles);
     return particles;
 }
 

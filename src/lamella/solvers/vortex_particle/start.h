@@ -27,8 +27,8 @@ class Start {
 public:
     Start(const Surface& s, const film::Problem& films, const StartOptions& options);
 
-    double thickness(const Vec3& x) const;   ///< [m]
-    double surfactant(const Vec3& x) const;  ///< [mol/m^2]
+    double thickness(const Vec3& x) const;                       ///< [m]
+    double surfactant(const Vec3& x) const;                      ///< [mol/m^2]
     double rest_surfactant() const { return rest_surfactant_; }  ///< Gamma_0 [mol/m^2]
 
 private:
@@ -39,12 +39,9 @@ private:
     double low_, range_ = 0.0;  ///< of the height along up_
 };
 
-/// Particles with the thickness, surfactant and vorticity of a scene, at rest. What they put on the vertices is what the
-/// scene asks for: their areas and circulations are corrected to that end in a few sweeps [method sheet 7].
-Particles start_particles(const Surface& s,
-                          const Transfer& transfer,
-                          const film::Problem& films,
-                          const Options& options,
-                          std::uint64_t seed);
+/// Particles with the thickness, surfactant and vorticity of a scene, at rest. What they put on the vertices is what
+/// the scene asks for: their areas and circulations are corrected to that end in a few sweeps [method sheet 7].
+Particles start_particles(
+    const Surface& s, const Transfer& transfer, const film::Problem& films, const Options& options, std::uint64_t seed);
 
 }  // namespace lamella::vortex_particle

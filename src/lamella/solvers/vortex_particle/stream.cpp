@@ -19,9 +19,11 @@ Stream::Stream(const Surface& s, const film::Problem& films, const Options& opti
       seed_(seed) {
     if (!s.open()) return;
     if (!options.incompressible)
-        throw InputError("vortex_particle: streams of elastic films are not built yet; set vortex_particle.incompressible = true");
+        throw InputError(
+            "vortex_particle: streams of elastic films are not built yet; set vortex_particle.incompressible = true");
     if (options.walls == Walls::kNoSlip)
-        throw InputError("vortex_particle.walls = \"no_slip\" is not built for a film that streams; its sides let it slip");
+        throw InputError(
+            "vortex_particle.walls = \"no_slip\" is not built for a film that streams; its sides let it slip");
     if (options.start.surfactant == SurfactantProfile::kBalanced)
         throw InputError("vortex_particle.start.surfactant = \"balanced\" is not built for a film that streams");
     const Vec3& g = films.material.gravity;
@@ -56,7 +58,8 @@ double Stream::let_in(double dt, std::int64_t step, Particles& particles) const 
 void Stream::fill_strip(std::uint32_t t, std::size_t k, double dt, std::int64_t step, Particles& particles) const {
     const double area = dt * norm(cross(velocity_, surface_.edge(t, k)));
     const auto count = static_cast<std::size_t>(std::max(1.0, std::round(area / particle_area_)));
-    const RandomBits bits = random_bits(seed_, RandomStream::kFilmParticle, static_cast<std::uint64_t>(step) + 1, 3 * t + k);
+    const RandomBits bits =
+        random_bits(seed_, RandomStream::kFilmParticle, static_cast<std::uint64_t>(step) + 1, 3 * t + k);
     EvenPoints points(uniform01(bits, 0), uniform01(bits, 1));
     for (std::size_t i = 0; i < count; ++i) {
         const auto [along, age] = points.next();
@@ -78,7 +81,8 @@ void Stream::fill_strip(std::uint32_t t, std::size_t k, double dt, std::int64_t 
 void Stream::absorb(double dt, Particles& particles) const {
     if (sponge_length_ == 0.0) return;
     const Vec3 ahead = velocity_ / norm(velocity_);
-    const double fastest = 6.0 * norm(velocity_) / sponge_length_;  // grows linearly along the sponge: exp(-3) at its end
+    const double fastest =
+        6.0 * norm(velocity_) / sponge_length_;  // grows linearly along the sponge: exp(-3) at its end
     parallel_for(particles.size(), [&](std::size_t p) {
         const Vec3 x = surface_.point(particles.triangle[p], particles.place[p]);
         const double depth = (dot(x, ahead) - sponge_start_) / sponge_length_;

@@ -24,7 +24,8 @@ public:
     /// `u` of triangles relative to the stream.
     std::vector<Vec3> relative(std::vector<Vec3> u) const;
 
-    /// Adds the film that came in during the last `dt`, as it was at the start: the strip behind each edge of the inflow.
+    /// Adds the film that came in during the last `dt`, as it was at the start: the strip behind each edge of the
+    /// inflow.
     /// @returns its liquid [m^3]
     double let_in(double dt, std::int64_t step, Particles& particles) const;
     /// In front of the outflow particles lose their circulation and their speed beside the stream, so that what leaves

@@ -110,7 +110,8 @@ std::size_t measure(Surface& s) {
     for (Vec3& n : s.vertex_normal) n *= 1.0 / norm(n);
     for (std::size_t v = 0; v < s.vertices(); ++v) {
         s.vertex_share[v] /= s.vertex_area[v];
-        if (std::abs(s.vertex_share[v] - 1.0) < 1e-12) s.vertex_share[v] = 1.0;  // a sum of its own parts but for rounding
+        if (std::abs(s.vertex_share[v] - 1.0) < 1e-12)
+            s.vertex_share[v] = 1.0;  // a sum of its own parts but for rounding
     }
     s.mean_edge = std::sqrt(4.0 / std::sqrt(3.0) * s.total_area / static_cast<double>(s.triangles()));
     return s.triangles();
@@ -133,8 +134,9 @@ void find_openings(Surface& s, const Vec3& stream) {
             const double cosine = dot(ahead, outward(s, t, k));
             if (std::abs(cosine) < kAlong) continue;
             if (std::abs(cosine) < kCrosses)
-                throw InputError("vortex_particle.stream.velocity runs into a wall of the film at a small angle; streams are "
-                                 "built for rectangles, along two of their sides");
+                throw InputError(
+                    "vortex_particle.stream.velocity runs into a wall of the film at a small angle; streams are "
+                    "built for rectangles, along two of their sides");
             s.opening[t][k] = cosine > 0.0 ? Opening::kOutflow : Opening::kInflow;
             for (const std::uint32_t v : {s.corner[t][(k + 1) % 3], s.corner[t][(k + 2) % 3]})
                 s.vertex_opening[v] = std::max(s.vertex_opening[v], s.opening[t][k]);
@@ -142,7 +144,9 @@ void find_openings(Surface& s, const Vec3& stream) {
     }
     for (std::size_t v = 0; v < s.vertices(); ++v)
         if (s.loop[v] >= 0 && !s.loops[static_cast<std::size_t>(s.loop[v])].outer)
-            throw InputError("vortex_particle.stream: the film has a hole, around which streams are not built; put a [[solid]] there");
+            throw InputError(
+                "vortex_particle.stream: the film has a hole, around which streams are not built; put a [[solid]] "
+                "there");
 }
 
 void find_walls(Surface& s, Walls walls) {
@@ -161,8 +165,10 @@ void find_walls(Surface& s, Walls walls) {
             }
         }
     for (std::size_t v = 0; v < s.vertices(); ++v) {
-        if (s.place[v] == Place::kWall) s.wall_normal[v] *= 1.0 / norm(s.wall_normal[v]);
-        else s.wall_normal[v] = {};
+        if (s.place[v] == Place::kWall)
+            s.wall_normal[v] *= 1.0 / norm(s.wall_normal[v]);
+        else
+            s.wall_normal[v] = {};
     }
 }
 
@@ -175,7 +181,8 @@ Surface surface_of(const mesh::FoamMesh& mesh, Walls walls, const Vec3& stream) 
     find_rings(s);
     find_components_and_loops(s);
     const std::size_t flat = measure(s);
-    if (flat != s.triangles()) throw InputError(fmt::format("vortex_particle: triangle {} of the film has no area", flat));
+    if (flat != s.triangles())
+        throw InputError(fmt::format("vortex_particle: triangle {} of the film has no area", flat));
     if (norm(stream) > 0.0) find_openings(s, stream);
     find_walls(s, walls);
     return s;

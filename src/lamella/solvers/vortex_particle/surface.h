@@ -27,8 +27,8 @@ struct Incidence {
 /// Where a vertex is.
 enum class Place : std::uint8_t {
     kInside,
-    kWall,    ///< flow along the wall only
-    kStill,   ///< no flow: on a wall without slip, or where two walls meet at an angle
+    kWall,   ///< flow along the wall only
+    kStill,  ///< no flow: on a wall without slip, or where two walls meet at an angle
 };
 
 /// What lies beyond the end of a film.
@@ -60,26 +60,26 @@ struct Surface {
     std::vector<std::int32_t> loop;                     ///< of each vertex; -1: inside
     std::vector<BoundaryLoop> loops;
     std::uint32_t components = 0;
-    std::vector<std::uint32_t> site;                    ///< the vertex of the films' mesh that each vertex lies at
-    std::vector<std::uint32_t> film;                    ///< the face of the films' mesh that each triangle lies in
-    std::vector<std::uint8_t> side;                     ///< 0: it is the leaf of the region behind that face, 1: in front
-    std::vector<std::uint32_t> region;                  ///< the bubble around which it closes, or kNoRegion
-    std::vector<std::uint32_t> partner;                 ///< the other leaf of the same film, or kNoPartner
-    std::vector<double> share;                          ///< of the film: 1/2 where it has two leaves, else 1
+    std::vector<std::uint32_t> site;     ///< the vertex of the films' mesh that each vertex lies at
+    std::vector<std::uint32_t> film;     ///< the face of the films' mesh that each triangle lies in
+    std::vector<std::uint8_t> side;      ///< 0: it is the leaf of the region behind that face, 1: in front
+    std::vector<std::uint32_t> region;   ///< the bubble around which it closes, or kNoRegion
+    std::vector<std::uint32_t> partner;  ///< the other leaf of the same film, or kNoPartner
+    std::vector<double> share;           ///< of the film: 1/2 where it has two leaves, else 1
     // Empty in a film that nothing streams through.
     std::vector<std::array<Opening, 3>> opening;  ///< of the edge opposite to corner k
     std::vector<Opening> vertex_opening;          ///< of each vertex; where inflow meets outflow, outflow
 
     // Where it lies.
     std::vector<Vec3> position;
-    std::vector<Vec3> normal;                     ///< of each triangle
-    std::vector<double> area;                     ///< of each triangle [m^2]
-    std::vector<std::array<Vec3, 3>> hat_slope;   ///< grad phi_k = n x e_k / (2 area) [1/m], e_k the edge opposite to k
-    std::vector<Vec3> vertex_normal;              ///< mean of the triangles around, weighted with area
-    std::vector<Place> place;                     ///< of each vertex
-    std::vector<Vec3> wall_normal;                ///< of each vertex: out of the film, where place is kNoNeighbor; else 0
-    std::vector<double> vertex_share;             ///< mean share of the triangles around each vertex
-    std::vector<double> vertex_area;              ///< a third of the triangles around: sums to the area [m^2]
+    std::vector<Vec3> normal;                    ///< of each triangle
+    std::vector<double> area;                    ///< of each triangle [m^2]
+    std::vector<std::array<Vec3, 3>> hat_slope;  ///< grad phi_k = n x e_k / (2 area) [1/m], e_k the edge opposite to k
+    std::vector<Vec3> vertex_normal;             ///< mean of the triangles around, weighted with area
+    std::vector<Place> place;                    ///< of each vertex
+    std::vector<Vec3> wall_normal;     ///< of each vertex: out of the film, where place is kNoNeighbor; else 0
+    std::vector<double> vertex_share;  ///< mean share of the triangles around each vertex
+    std::vector<double> vertex_area;   ///< a third of the triangles around: sums to the area [m^2]
     double total_area = 0.0;
     double longest_edge = 0.0;  ///< [m]
     double mean_edge = 0.0;     ///< of equilateral triangles of the same number and area [m]

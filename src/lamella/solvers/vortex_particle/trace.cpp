@@ -98,9 +98,12 @@ bool walk(const Surface& s, Spot& spot, Vec3 displacement) {
             // At the end of this stretch of wall the next one decides, from the triangle that it belongs to.
             const Place3 slide = rate_of(s, t, displacement);
             const std::size_t a = (out + 1) % 3, b = (out + 2) % 3;
-            if (spot.place[a] == 0.0 && sinks(slide, a)) out = a;
-            else if (spot.place[b] == 0.0 && sinks(slide, b)) out = b;
-            else continue;
+            if (spot.place[a] == 0.0 && sinks(slide, a))
+                out = a;
+            else if (spot.place[b] == 0.0 && sinks(slide, b))
+                out = b;
+            else
+                continue;
             if (s.neighbor[t][out] == kNoNeighbor) break;  // in a corner
         }
         cross_edge(s, spot, out, displacement);
@@ -132,8 +135,10 @@ void trace(const Surface& s, std::span<const Vec3> velocity, double dt, Particle
         Spot spot = start;
         const Place3 near = ahead(start.place, dt, mean);
         bool stays = true;
-        if (inside(near)) spot.place = near;
-        else stays = walk(s, spot, dt * vector_of(s, t, mean));
+        if (inside(near))
+            spot.place = near;
+        else
+            stays = walk(s, spot, dt * vector_of(s, t, mean));
         normalize(spot.place);
         particles.velocity[p] = turned(particles.velocity[p], s.normal[t], s.normal[spot.triangle]);
         particles.triangle[p] = stays ? spot.triangle : kGone;

@@ -17,14 +17,14 @@ struct Spot {
     std::array<double, 3> place;  ///< barycentric coordinates
 };
 
-/// Moves a spot along `displacement`, a vector of its triangle's plane that is turned about each edge that it crosses; a
-/// wall takes away what points out of the film. [method sheet 5.9]
+/// Moves a spot along `displacement`, a vector of its triangle's plane that is turned about each edge that it crosses;
+/// a wall takes away what points out of the film. [method sheet 5.9]
 /// @returns  whether it is still in the film: false where it came to an outflow, and stays there
 bool walk(const Surface& s, Spot& spot, Vec3 displacement);
 
 /// Moves particles for a time `dt` with the velocity that is linear between vertices (the fourth-order method of Runge
-/// and Kutta), and turns what velocity they carry along with the surface. Those that leave the film through an outflow get
-/// the triangle kGone.
+/// and Kutta), and turns what velocity they carry along with the surface. Those that leave the film through an outflow
+/// get the triangle kGone.
 /// @param velocity  of vertices [m/s]
 void trace(const Surface& s, std::span<const Vec3> velocity, double dt, Particles& particles);
 

@@ -79,8 +79,10 @@ void VortexParticleSolver::check_solids() const {
         if (!body.free) continue;
         const double around = 2.0 * kPi * body.radius * body.radius * material.liquid_density * material.thickness;
         if (body.mass < around)
-            throw InputError(fmt::format("vortex_particle: a free solid lighter than the film that it moves, {:.3g} kg, is not "
-                                         "built yet; raise solid.mass", around));
+            throw InputError(
+                fmt::format("vortex_particle: a free solid lighter than the film that it moves, {:.3g} kg, is not "
+                            "built yet; raise solid.mass",
+                            around));
         for (const Vec3& n : surface_.normal)
             if (dot(n, surface_.normal[0]) < 1.0 - 1e-9)
                 throw InputError("vortex_particle: a solid with free = true on a curved film is not built yet");
@@ -157,8 +159,9 @@ double VortexParticleSolver::choose_step(double left) const {
     if (crossings > 0.0) dt = std::min(dt, options_.courant / crossings);
     if (fastest_dilatation_ > 0.0) dt = std::min(dt, kMostCompression / fastest_dilatation_);
     if (!std::isfinite(crossings) || dt < 1e-6 * options_.largest_step)
-        throw NumericalError(fmt::format("vortex_particle: at {} s, step {}, the flow runs away: {} edges/s, dilatation {} 1/s",
-                                         time_, steps_, crossings, fastest_dilatation_));
+        throw NumericalError(
+            fmt::format("vortex_particle: at {} s, step {}, the flow runs away: {} edges/s, dilatation {} 1/s", time_,
+                        steps_, crossings, fastest_dilatation_));
     dt = left / std::ceil(left / dt - 1e-9);
     constexpr double kSame = 1e-9;  // steps that differ by rounding are one step, and share their matrices
     return std::abs(dt - step_) < kSame * dt ? step_ : dt;
@@ -203,7 +206,8 @@ void VortexParticleSolver::drive_circulation(double dt, MeshFlow& flow) {
 
 /// Surfactant at the end of the step, which resists compression: with Gamma* - Gamma = -dt Gamma theta*,
 ///
-///     [diag(A_i / (dt Gamma_i)) + (2 R T dt / rho) K_(1/eta)] (Gamma* - Gamma) = -D - dt G - (2 R T dt / rho) K_(1/eta) Gamma
+///     [diag(A_i / (dt Gamma_i)) + (2 R T dt / rho) K_(1/eta)] (Gamma* - Gamma) = -D - dt G - (2 R T dt / rho)
+///     K_(1/eta) Gamma
 ///
 /// G_i the weak divergence of gravity. [Tao24, eq. 16; method sheet 5.4]
 SurfactantProblem VortexParticleSolver::surfactant_problem(double dt, const MeshFlow& flow) const {
@@ -253,8 +257,10 @@ std::vector<double> VortexParticleSolver::compress(double dt, MeshFlow& flow) {
 void VortexParticleSolver::note_iterations(int iterations, double residual) {
     iterations_ = iterations;
     if (!(residual < std::sqrt(options_.solve_tolerance)))
-        throw NumericalError(fmt::format("vortex_particle: at {} s, step {}, the surfactant's equation has a residual "
-                                         "of {} after {} iterations", time_, steps_, residual, iterations));
+        throw NumericalError(
+            fmt::format("vortex_particle: at {} s, step {}, the surfactant's equation has a residual "
+                        "of {} after {} iterations",
+                        time_, steps_, residual, iterations));
 }
 
 void VortexParticleSolver::take_dilatation(const std::vector<double>& dilatation, MeshFlow& flow) {
@@ -347,8 +353,9 @@ void VortexParticleSolver::obey_solids(double dt, MeshFlow& flow) {
 }
 
 /// Particles take over changes, not values: what the mesh cannot see of them stays [Tao24, eq. 21]. Velocities follow
-/// slowly what it does see. Areas need not: a thickness that drifted is carried by the liquid, which is conserved (a blend
-/// as in the method sheet's 12.10, tried, makes thickness of thick and thin neighbors alike and liquid out of nothing).
+/// slowly what it does see. Areas need not: a thickness that drifted is carried by the liquid, which is conserved (a
+/// blend as in the method sheet's 12.10, tried, makes thickness of thick and thin neighbors alike and liquid out of
+/// nothing).
 void VortexParticleSolver::mesh_to_particles(double dt,
                                              const MeshFlow& before,
                                              const MeshFlow& after,

@@ -61,7 +61,7 @@ public:
     const MeshFlow& observed() const;
     double kinetic_energy() const;  ///< [J]
 
-    double film_energy() const;     ///< kinetic, of films along their normals, air that counts included [J]
+    double film_energy() const;  ///< kinetic, of films along their normals, air that counts included [J]
     const mesh::FoamMesh& films() const;
 
 private:
@@ -75,7 +75,10 @@ private:
     void diffuse(double dt, MeshFlow& flow);
     void obey_solids(double dt, MeshFlow& flow);
     void recover_velocity(MeshFlow& flow) const;
-    void mesh_to_particles(double dt, const MeshFlow& before, const MeshFlow& after, const std::vector<double>& dilatation);
+    void mesh_to_particles(double dt,
+                           const MeshFlow& before,
+                           const MeshFlow& after,
+                           const std::vector<double>& dilatation);
     void move_particles(double dt, const MeshFlow& flow);
     void exchange_with_stream(double dt);
     std::size_t most_per_triangle() const;
@@ -142,21 +145,21 @@ private:
     Bins bins_;
     std::vector<Body> bodies_;
     std::vector<double> hole_circulation_;
-    std::vector<Vec3> velocity_;     ///< of triangles, that the last step found
+    std::vector<Vec3> velocity_;  ///< of triangles, that the last step found
     double time_ = 0.0;
     std::int64_t steps_ = 0;
-    double step_ = 0.0;              ///< the last one
+    double step_ = 0.0;  ///< the last one
     double fastest_dilatation_ = 0.0;
     bool ruptured_ = false;
-    std::vector<sim::Event> events_;  ///< since the last look
+    std::vector<sim::Event> events_;             ///< since the last look
     double liquid_in_ = 0.0, liquid_out_ = 0.0;  ///< that the stream has brought and taken [m^3]
-    std::int64_t iterations_ = 0;    ///< of the surfactant's equation in the last step
+    std::int64_t iterations_ = 0;                ///< of the surfactant's equation in the last step
     /// For which its equation is factored; the factors precondition those of other steps.
     struct Reference {
         double step = 0.0;
         std::vector<double> thickness, surfactant;
     } reference_;
-    double diffusion_step_ = 0.0;    ///< for which the diffusion is factored
+    double diffusion_step_ = 0.0;  ///< for which the diffusion is factored
     mutable std::optional<MeshFlow> observed_;
     std::unique_ptr<Moving> moving_;  ///< nothing where films stand still
 };

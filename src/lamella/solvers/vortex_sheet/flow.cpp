@@ -48,16 +48,25 @@ Flow flow_at(const FoamMesh& mesh,
              const SheetGeometry& geometry,
              const Circulation& phi,
              std::span<const BlownRing> blown,
-             const spatial::VortexSumOptions& sum) {
+             const spatial::VortexSumOptions& sum,
+             const LooseSheets& loose) {
     Flow flow;
     flow.strength = face_strengths(mesh, topology, phi);
-    spatial::VortexField field = spatial::vortex_sum(geometry.barycenter, geometry.barycenter, flow.strength, sum, true);
+    std::vector<Vec3> with_loose;
+    if (!loose.empty()) {
+        with_loose = loose.barycenters();
+        with_loose.insert(with_loose.begin(), geometry.barycenter.begin(), geometry.barycenter.end());
+        const std::vector<Vec3> strength = loose.strengths();
+        flow.strength.insert(flow.strength.end(), strength.begin(), strength.end());
+    }
+    const std::vector<Vec3>& center = loose.empty() ? geometry.barycenter : with_loose;
+    spatial::VortexField field = spatial::vortex_sum(center, center, flow.strength, sum, true);
     flow.potential = field.potential;
     for (const BlownRing& ring : blown) {
         spatial::VortexSumOptions smooth = sum;
         smooth.delta = ring.core;
         smooth.kernel = spatial::VortexKernel::kPlummer;  // the others are of higher order on sheets only
-        const spatial::VortexField jet = spatial::vortex_sum(geometry.barycenter, ring.center, ring.strength, smooth, true);
+        const spatial::VortexField jet = spatial::vortex_sum(center, ring.center, ring.strength, smooth, true);
         for (std::size_t f = 0; f < field.velocity.size(); ++f) {
             field.velocity[f] += jet.velocity[f];
             field.potential[f] += jet.potential[f];
@@ -65,6 +74,7 @@ Flow flow_at(const FoamMesh& mesh,
     }
     flow.flux = fluxes(mesh, topology, field.potential);
     flow.velocity = vertex_velocity(topology, geometry, field.velocity, flow.flux);
+    flow.loose_velocity = loose.mean_at_vertices(field.velocity.data() + mesh.faces.size());
     return flow;
 }
 
@@ -82,7 +92,8 @@ double meet_fluxes(const FoamMesh& mesh,
     std::vector<FaceId> faces;
     for (const FaceId f : mesh.faces.ids()) {
         const auto& corners = topology.entry[f];
-        if (std::any_of(corners.begin(), corners.end(), [&](const auto& e) { return in_target[e[0]] + in_target[e[1]] > 0; }))
+        if (std::any_of(corners.begin(), corners.end(),
+                        [&](const auto& e) { return in_target[e[0]] + in_target[e[1]] > 0; }))
             faces.push_back(f);
     }
     std::vector<Vec3> center;

@@ -4,6 +4,7 @@
 // through rings.
 
 #include "lamella/film/wire.h"
+#include "lamella/solvers/vortex_sheet/loose_sheets.h"
 #include "lamella/solvers/vortex_sheet/operators.h"
 #include "lamella/spatial/vortex_sum.h"
 
@@ -21,12 +22,13 @@ struct BlownRing {
 /// The rings of all wires that blow at a time.
 std::vector<BlownRing> blown_rings(std::span<const film::Wire> wires, double time);
 
-/// The flow at the films, and what it does to them.
+/// The flow at the films and at loose sheets, and what it does to them.
 struct Flow {
-    std::vector<Vec3> strength;    ///< G_f
-    std::vector<Vec3> potential;   ///< A_f of the films themselves
-    std::vector<double> flux;      ///< w, per entry, of films and blown rings
-    IdVector<mesh::VertexId, Vec3> velocity;  ///< of the vertices [m/s]
+    std::vector<Vec3> strength;               ///< G_f of the triangles of films, then of loose sheets
+    std::vector<Vec3> potential;              ///< A_f of films and loose sheets there
+    std::vector<double> flux;                 ///< w, per entry, of films, loose sheets and blown rings
+    IdVector<mesh::VertexId, Vec3> velocity;  ///< of the vertices of films [m/s]
+    std::vector<Vec3> loose_velocity;         ///< of those of loose sheets [m/s]
 
     /// Kinetic energy of the air over its density, 1/2 sum_f G_f . A_f [m^5/s^2].
     double energy() const;
@@ -36,7 +38,8 @@ Flow flow_at(const mesh::FoamMesh& mesh,
              const SheetGeometry& geometry,
              const Circulation& phi,
              std::span<const BlownRing> blown,
-             const spatial::VortexSumOptions& sum);
+             const spatial::VortexSumOptions& sum,
+             const LooseSheets& loose = {});
 
 /// Which entries a flux is demanded of, and which.
 struct FluxTarget {
@@ -45,8 +48,8 @@ struct FluxTarget {
 };
 
 /// Changes phi at the entries of `target` such that their fluxes become what is wanted: conjugate gradients on the
-/// map from circulations to fluxes, which is symmetric and positive (it is the kinetic energy's) [method sheet 7.1, 14.3].
-/// Only the triangles at these entries take part in an iteration.
+/// map from circulations to fluxes, which is symmetric and positive (it is the kinetic energy's) [method
+/// sheet 7.1, 14.3]. Only the triangles at these entries take part in an iteration.
 ///
 /// @param flux  of phi as it is, per entry
 /// @returns  the largest flux that is still missing, over the largest wanted change

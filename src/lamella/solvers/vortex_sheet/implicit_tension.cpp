@@ -33,12 +33,13 @@ void VortexSheetSolver::check_implicit() const {
     if (options_.integrator != Integrator::kVerlet) refuse("integrator = \"symplectic_euler\"");
     if (options_.compat.form != Form::kFace) refuse("compat.form = \"point\"");
     if (options_.compat.velocity_factor != 1.0) refuse("a compat.velocity_factor other than 1");
+    if (options_.popped_vorticity == PoppedVorticity::kFree) refuse("popped_vorticity = \"free\"");
     if (any_pinned(sheet_topology(input_.films->mesh))) refuse("wires that run through films (films may end on wires)");
 }
 
 bool VortexSheetSolver::implicit_possible() const {
     return options_.integrator == Integrator::kVerlet && options_.compat.form == Form::kFace &&
-           options_.compat.velocity_factor == 1.0 && !any_pinned(tracker_ ? topology_ : sheet_topology(input_.films->mesh));
+           options_.compat.velocity_factor == 1.0 && loose_.empty() && !any_pinned(tracker_ ? topology_ : sheet_topology(input_.films->mesh));
 }
 
 /// Of the oscillation l = 2 of a sphere as large as the largest bubble [Lamb32, art. 275]; without bubbles, of a round

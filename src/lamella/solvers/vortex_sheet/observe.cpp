@@ -74,8 +74,8 @@ std::vector<sim::Scalar> VortexSheetSolver::scalars() const {
         surface += tension[f] * a;
     }
     const double kinetic = density * observed().energy();
-    const Vec3 p = density * impulse(mesh(), topology_, geometry, phi_);
-    const Vec3 l = density * angular_impulse(mesh(), topology_, geometry, phi_);
+    const Vec3 p = density * (impulse(mesh(), topology_, geometry, phi_) + loose_.impulse());
+    const Vec3 l = density * (angular_impulse(mesh(), topology_, geometry, phi_) + loose_.angular_impulse());
     const auto films_apart = mesh::deviation_from_plateau(mesh::triple_edge_angles(mesh(), mesh::AngleMethod::kWide));
     const auto lines_apart = mesh::deviation_from_plateau(mesh::junction_angles(mesh(), mesh::AngleMethod::kQuadratic));
     double fastest = 0.0;
@@ -103,6 +103,7 @@ std::vector<sim::Scalar> VortexSheetSolver::scalars() const {
         {"implicit_evaluations", "-", static_cast<double>(evaluations_), "of the flow in the last step; 0: it was explicit"},
         {"vertices", "-", static_cast<double>(mesh().position.size()), "of the films"},
         {"faces", "-", static_cast<double>(mesh().faces.size()), "triangles"},
+        {"loose_triangles", "-", static_cast<double>(loose_.triangles.size()), "of vortex sheets that burst films left"},
         {"min_angle", "deg", kDegrees * mesh::min_angle(mesh()), "smallest angle of a triangle"},
     };
 }

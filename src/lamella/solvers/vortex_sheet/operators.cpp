@@ -4,6 +4,7 @@
 #include "lamella/linalg/dense.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lamella::vortex_sheet {
 namespace {
@@ -43,7 +44,8 @@ std::array<Vec3, 3> pseudo_inverse(std::span<const Vec3> normals, double area) {
     constexpr double kCutoff = 1e-7;
     for (std::size_t k = 0; k < 3; ++k) {
         if (pairs.value[k] <= kCutoff * pairs.value[2]) continue;
-        for (std::size_t i = 0; i < 3; ++i) inverse[i] += (pairs.vector[k][i] / std::max(pairs.value[k], least)) * pairs.vector[k];
+        for (std::size_t i = 0; i < 3; ++i)
+            inverse[i] += (pairs.vector[k][i] / std::max(pairs.value[k], least)) * pairs.vector[k];
     }
     return inverse;
 }
@@ -133,6 +135,49 @@ IdVector<VertexId, Vec3> vertex_velocity(const SheetTopology& topology,
         velocity[v] += times(geometry.inverse[v], missing);
     });
     return velocity;
+}
+
+void carry_fluxes_all_the_way(const FoamMesh& start,
+                              const SheetTopology& topology,
+                              const SheetGeometry& geometry,
+                              std::span<const double> flux,
+                              double dt,
+                              IdVector<VertexId, Vec3>& velocity) {
+    // Each sweep leaves about dt |grad u| of what was missing: three do, but where films snap.
+    constexpr int kMostSweeps = 8;
+    constexpr double kEnough = 1e-5;  // of the largest flux
+    double largest = 0.0;
+    for (const double w : flux) largest = std::max(largest, std::abs(w));
+    std::vector<Vec3> mean(start.faces.size());
+    if (topology.hold.empty()) return;
+    std::vector<double> off(topology.hold.size(), 0.0);
+    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+        parallel_for(mean.size(), [&](std::size_t i) {
+            const auto& [a, b, c] = start.faces[static_cast<FaceId>(i)].vertices;
+            const Vec3 ab = start.position[b] - start.position[a], ac = start.position[c] - start.position[a];
+            const Vec3 way_b = dt * (velocity[b] - velocity[a]), way_c = dt * (velocity[c] - velocity[a]);
+            mean[i] = 0.5 * cross(ab + 0.5 * way_b, ac + 0.5 * way_c) + cross(way_b, way_c) / 24.0;
+        });
+        for_each_vertex(topology, [&](VertexId v) {
+            if (topology.hold[v] != Hold::kFree) return;
+            Vec3 missing;
+            double most = 0.0;
+            for (std::size_t i = topology.first(v); i < topology.last(v); ++i) {
+                Vec3 normal;
+                for (const Corner& corner : topology.corners.of(v)) {
+                    const auto& entry = topology.entry[corner.face][corner.k];
+                    if (entry[0] == i) normal += mean[index(corner.face)] / 3.0;
+                    if (entry[1] == i) normal -= mean[index(corner.face)] / 3.0;
+                }
+                const double lack = flux[i] - dot(normal, velocity[v]);
+                most = std::max(most, std::abs(lack));
+                missing += lack * geometry.outward[i];
+            }
+            off[index(v)] = most;
+            velocity[v] += times(geometry.inverse[v], missing);
+        });
+        if (*std::max_element(off.begin(), off.end()) <= kEnough * largest) return;
+    }
 }
 
 std::vector<double> film_pressures(const SheetTopology& topology,

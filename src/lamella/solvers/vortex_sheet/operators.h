@@ -1,11 +1,11 @@
 #pragma once
 
-// The face form of the method [method sheet 14.1]: strengths of the sheet, fluxes through the vertices, and the two operators
-// between pressure and motion, which are transposes of each other, so that the linear system in space conserves energy.
-
-#include "lamella/solvers/vortex_sheet/sheet.h"
+// The face form of the method [method sheet 14.1]: strengths of the sheet, fluxes through the vertices, and the two
+// operators between pressure and motion, which are transposes of each other, so that the linear system in space
+// conserves energy.
 
 #include "lamella/core/vec.h"
+#include "lamella/solvers/vortex_sheet/sheet.h"
 
 #include <array>
 #include <span>
@@ -40,6 +40,21 @@ IdVector<mesh::VertexId, Vec3> vertex_velocity(const SheetTopology& topology,
                                                const SheetGeometry& geometry,
                                                std::span<const Vec3> face_velocity,
                                                std::span<const double> flux);
+
+/// Vertices go straight for a time `dt`, in which N changes: corrects their velocities, the shortest way, such that
+/// each free vertex carries its flux over its whole way, (mean of N_v^r) . u_v = w_v^r. Volumes then change by exactly
+/// what the fluxes say, whatever the length of the step. The mean area vector of a triangle on its way is that of the
+/// middle of the way plus 1/12 of that of its displacements.
+///
+/// @param start     films at the start of the way
+/// @param geometry  of the films near the middle of the way
+/// @param velocity  of all vertices; those on wires are left as they are
+void carry_fluxes_all_the_way(const mesh::FoamMesh& start,
+                              const SheetTopology& topology,
+                              const SheetGeometry& geometry,
+                              std::span<const double> flux,
+                              double dt,
+                              IdVector<mesh::VertexId, Vec3>& velocity);
 
 /// The pressures that films of gradient `force` = dE/dx_v [N] ask of the regions around each vertex, least squares of
 /// least norm of sum_r p_r N_v^r = force; on a film p_a - p_b = force . N / |N|^2. Per entry [Pa].

@@ -21,6 +21,12 @@ enum class Tension {
     kAuto,      ///< semi-implicitly where that takes fewer evaluations of the flow
 };
 
+/// What becomes of the circulation of a film that bursts.
+enum class PoppedVorticity {
+    kLost,  ///< it goes with the film, as published
+    kFree,  ///< it stays in the air, as a vortex sheet that no film carries [method sheet 10.1]
+};
+
 /// Published behaviour, for comparison.
 struct CompatOptions {
     Form form = Form::kFace;
@@ -52,6 +58,7 @@ struct Options {
     double surface_viscosity = 0.0;
     double grid_filter = 0.0;
     int healing = 2;
+    PoppedVorticity popped_vorticity = PoppedVorticity::kLost;
     double damping = 0.0;
     bool volume_projection = true;
     bool impulse_projection = true;
@@ -95,6 +102,10 @@ struct Options {
                {"share that the shortest wave of the mesh loses per step; long waves lose next to nothing"});
         option("healing", healing, sim::between(0, 100),
                {"sweeps that even circulations out where an edit changed the triangles; 0 lets edits set energy free"});
+        option("popped_vorticity", popped_vorticity,
+               sim::choices<PoppedVorticity>({{"lost", PoppedVorticity::kLost}, {"free", PoppedVorticity::kFree}}),
+               {"lost: the circulation of a film that bursts goes with it, as published; free: it stays in the air, which "
+                "carries it on"});
         option("damping", damping, sim::at_least(0.0),
                {"rate at which all circulations decay: a way to rest, no physics", "1/time"});
         option("volume_projection", volume_projection, {"bubbles keep their volumes to rounding"});

@@ -7,6 +7,7 @@ void register_vortex_sheet(sim::SolverRegistry& registry) {
     registry.add({.name = "vortex_sheet",
                   .summary = "films and foams in air: vortex sheets driven by surface tension [Da15]",
                   .films = true,
+                  .cuda = true,
                   .create =
                       [](const sim::SolverInput& input) {
                           return std::make_unique<VortexSheetSolver>(sim::read_options<Options>(input.options, {.length = "m", .mass = "kg", .time = "s"}), input);

@@ -22,7 +22,8 @@
 namespace lamella::vortex_sheet {
 namespace {
 
-constexpr double kFarthest = 0.25;  // edges that a film moves in one step
+constexpr double kLongestLoose = 1.5;  // edges: with the smoothing length, neighbors overlap
+constexpr double kFarthest = 0.25;     // edges that a film moves in one step
 // Triangles that a swing stretches and lets go again keep their edges: every flip bends the film.
 constexpr double kFlipAngle = 1.1;
 
@@ -36,16 +37,20 @@ using mesh::VertexId;
 VortexSheetSolver::VortexSheetSolver(const Options& options, const sim::SolverInput& input)
     : options_(options), input_(input) {
     if (!input_.films) throw InputError("the scene has no films; add a [[bubble]], [[film]] or [foam]");
+    film::refuse_punctures(*input_.films, "vortex_sheet");
     const bool blows = std::any_of(input_.films->wires.begin(), input_.films->wires.end(),
                                    [](const film::Wire& wire) { return wire.ring && wire.ring->blow != 0.0; });
     if (blows && options_.compat.form == Form::kPoint)
         throw InputError("vortex_sheet.compat.form = \"point\" knows no wire.blow");
-    if (input_.films->mesh.periodic()) throw InputError("vortex_sheet: films in a periodic box are for solver equilibrium");
+    if (input_.films->mesh.periodic())
+        throw InputError("vortex_sheet: films in a periodic box are for solver equilibrium");
     if (options_.compat.form == Form::kPoint && options_.integrator == Integrator::kVerlet)
         throw InputError("vortex_sheet.compat.form = \"point\" goes with integrator = \"symplectic_euler\"");
     for (const film::Event& event : input_.films->events)
         if (event.kind == film::Event::Kind::kInflate && !options_.volume_projection)
             throw InputError("vortex_sheet.volume_projection = false: bubbles cannot be inflated without it");
+    if (options_.compat.form == Form::kPoint && options_.popped_vorticity == PoppedVorticity::kFree)
+        throw InputError("vortex_sheet.compat.form = \"point\" knows no popped_vorticity = \"free\"");
     if (options_.tension == Tension::kImplicit) check_implicit();
 }
 
@@ -131,16 +136,20 @@ sim::StepReport VortexSheetSolver::advance(double time_limit) {
     std::optional<ImplicitStep> implicit = try_implicit(time_limit);
     const double dt = implicit ? implicit->dt : choose_step(time_limit);
     const bool verlet = options_.integrator == Integrator::kVerlet;
-    if (implicit) phi_ = std::move(implicit->phi);
-    else kick(verlet ? 0.5 * dt : dt);
+    if (implicit)
+        phi_ = std::move(implicit->phi);
+    else
+        kick(verlet ? 0.5 * dt : dt);
     damp(dt);
     velocity_ = implicit ? std::move(implicit->velocity) : velocity_at_midpoint(verlet ? dt : 0.0);
     move(dt);
     time_ = dt >= time_limit - time_ ? time_limit : time_ + dt;
     if (verlet && !implicit) kick(0.5 * dt);
     inflate();
-    if (options_.remeshing) edit_mesh([&] { tracker_->remesh(); });
-    else check_triangles();
+    if (options_.remeshing)
+        edit_mesh([&] { tracker_->remesh(); });
+    else
+        check_triangles();
     restore_volumes();
     keep_impulse();
     apply_events();
@@ -149,7 +158,8 @@ sim::StepReport VortexSheetSolver::advance(double time_limit) {
     ++steps_;
     observed_.reset();
     if (implicit)
-        return {.step = dt, .evaluations = evaluations_, .iterations = evaluations_ - 1, .residual = implicit->residual};
+        return {
+            .step = dt, .evaluations = evaluations_, .iterations = evaluations_ - 1, .residual = implicit->residual};
     return {.step = dt, .evaluations = 1, .residual = wire_residual_};
 }
 
@@ -162,6 +172,7 @@ double VortexSheetSolver::farthest_step(double dt) const {
     if (options_.largest_step > 0.0) dt = std::min(dt, options_.largest_step);
     double fastest = 0.0;
     for (const Vec3& u : velocity_) fastest = std::max(fastest, norm(u));
+    for (const Vec3& u : loose_.velocity) fastest = std::max(fastest, norm(u));
     for (const film::Wire& wire : input_.films->wires) fastest = std::max(fastest, norm(wire.velocity));
     // A film that snaps sets the step, down to a twentieth: what is faster still are single vertices out of order.
     constexpr double kShortest = 0.05;
@@ -210,8 +221,12 @@ Circulation VortexSheetSolver::tension_rate(const FoamMesh& mesh, const SheetGeo
 }
 
 void VortexSheetSolver::damp(double dt) {
-    if (options_.damping > 0.0)
-        for (double& value : phi_) value *= std::exp(-options_.damping * dt);
+    if (options_.damping > 0.0) {
+        const double left = std::exp(-options_.damping * dt);
+        for (double& value : phi_) value *= left;
+        for (auto& jumps : loose_.circulation)
+            for (double& value : jumps) value *= left;
+    }
     if (options_.compat.smoothing > 0.0)
         smooth_pairs(mesh(), topology_, std::min(1.0, options_.compat.smoothing * dt), phi_);
     if (options_.surface_viscosity == 0.0 && options_.grid_filter == 0.0) return;
@@ -224,9 +239,18 @@ void VortexSheetSolver::damp(double dt) {
 FoamMesh VortexSheetSolver::films_ahead(double ahead) const {
     FoamMesh films = mesh();
     for (const VertexId v : films.position.ids())
-        if (topology_.hold[v] == Hold::kFree) films.position[v] += ahead * velocity_[v];
-        else films.position[v] += ahead * wire_velocity(v, films.position[v], time_, time_ + ahead);
+        if (topology_.hold[v] == Hold::kFree)
+            films.position[v] += ahead * velocity_[v];
+        else
+            films.position[v] += ahead * wire_velocity(v, films.position[v], time_, time_ + ahead);
     return films;
+}
+
+Flow VortexSheetSolver::flow_of(const FoamMesh& mesh,
+                                const SheetGeometry& geometry,
+                                double time,
+                                const LooseSheets& loose) const {
+    return flow_at(mesh, topology_, geometry, phi_, blown_rings(input_.films->wires, time), sum_options(), loose);
 }
 
 /// Velocity of the vertices where they will be half a step from now.
@@ -235,13 +259,27 @@ IdVector<VertexId, Vec3> VortexSheetSolver::velocity_at_midpoint(double dt) {
     const FoamMesh middle = films_ahead(0.5 * dt);
     const SheetGeometry geometry = sheet_geometry(middle, topology_);
     if (options_.compat.form == Form::kPoint) return point_velocity(middle, topology_, geometry, phi_, sum_options());
-    Flow flow = flow_at(middle, topology_, geometry, phi_, blown_rings(input_.films->wires, half), sum_options());
-    obey_wires(middle, geometry, half, half + std::max(dt, 1e-9), flow);
+    const LooseSheets loose = loose_.ahead(0.5 * dt);
+    Flow flow = flow_of(middle, geometry, half, loose);
+    obey_wires(middle, geometry, loose, half, half + std::max(dt, 1e-9), flow);
+    loose_.velocity = std::move(flow.loose_velocity);
+    if (dt > 0.0) {
+        for (const VertexId v : mesh().position.ids())
+            if (topology_.hold[v] != Hold::kFree)
+                flow.velocity[v] = wire_velocity(v, mesh().position[v], time_, time_ + dt);
+        carry_fluxes_all_the_way(mesh(), topology_, geometry, flow.flux, options_.compat.velocity_factor * dt,
+                                 flow.velocity);
+    }
     return std::move(flow.velocity);
 }
 
 /// Where a wire runs through a film, the circulation there is such that the air goes with the wire.
-void VortexSheetSolver::obey_wires(const FoamMesh& middle, const SheetGeometry& geometry, double from, double to, Flow& flow) {
+void VortexSheetSolver::obey_wires(const FoamMesh& middle,
+                                   const SheetGeometry& geometry,
+                                   const LooseSheets& loose,
+                                   double from,
+                                   double to,
+                                   Flow& flow) {
     FluxTarget target;
     for (const VertexId v : middle.position.ids()) {
         if (topology_.hold[v] != Hold::kPinned) continue;
@@ -256,20 +294,25 @@ void VortexSheetSolver::obey_wires(const FoamMesh& middle, const SheetGeometry& 
     constexpr double kTolerance = 1e-3;
     wire_residual_ = meet_fluxes(middle, topology_, geometry, target, flow.flux, kTolerance, sum_options(), phi_);
     fix_gauge(topology_, phi_);
-    flow = flow_at(middle, topology_, geometry, phi_, blown_rings(input_.films->wires, from), sum_options());
+    flow = flow_of(middle, geometry, from, loose);
 }
 
 void VortexSheetSolver::move(double dt) {
     IdVector<VertexId, Vec3> displacement(mesh().position.size());
     const double most = 2.0 * kFarthest * input_.films->edge_length / dt;
     for (const VertexId v : displacement.ids()) {
-        if (topology_.hold[v] != Hold::kFree) velocity_[v] = wire_velocity(v, mesh().position[v], time_, time_ + dt);
-        else velocity_[v] *= options_.compat.velocity_factor;
+        if (topology_.hold[v] != Hold::kFree)
+            velocity_[v] = wire_velocity(v, mesh().position[v], time_, time_ + dt);
+        else
+            velocity_[v] *= options_.compat.velocity_factor;
         const double speed = norm(velocity_[v]);
         if (speed > most) velocity_[v] *= most / speed;
         displacement[v] = dt * velocity_[v];
     }
     mesh::staged_move(*tracker_, displacement);
+    for (Vec3& u : loose_.velocity) u *= options_.compat.velocity_factor;
+    loose_ = loose_.ahead(dt);
+    loose_.refine(kLongestLoose * input_.films->edge_length);
 }
 
 /// Without wires nothing outside pushes the air: what remeshing and rounding did to its impulse is taken back.
@@ -285,7 +328,7 @@ void VortexSheetSolver::keep_impulse() {
     if (!(total > 0.0)) return;
     for (const film::Wire& wire : input_.films->wires)
         if (wire.ring && wire.ring->blow != 0.0) return;
-    const Vec3 missing = impulse_ - impulse(mesh(), topology_, geometry, phi_);
+    const Vec3 missing = impulse_ - impulse(mesh(), topology_, geometry, phi_) - loose_.impulse();
     std::vector<Vec3> change(control.clusters());
     for (std::size_t c = 0; c < change.size(); ++c) change[c] = (control.volume(c) / total) * missing;
     control.add(change, phi_);
@@ -306,7 +349,8 @@ void VortexSheetSolver::apply(const film::Event& event) {
         return;
     }
     if (event.kind == film::Event::Kind::kInflate) {
-        inflations_.push_back({region, mesh().regions[region].target_volume, event.volume, time_, time_ + event.duration});
+        inflations_.push_back(
+            {region, mesh().regions[region].target_volume, event.volume, time_, time_ + event.duration});
         events_.push_back({time_, "inflate", {}, fmt::format("bubble {}", index(region))});
         return;
     }
@@ -314,11 +358,13 @@ void VortexSheetSolver::apply(const film::Event& event) {
                               ? film::largest_neighbor(mesh(), region).value_or(mesh::kOutside)
                               : event.into;
     if (film::share_film(mesh(), region, into)) return pop(region, into);
-    events_.push_back({time_, "skipped", {}, fmt::format("regions {} and {} share no film", index(region), index(into))});
+    events_.push_back(
+        {time_, "skipped", {}, fmt::format("regions {} and {} share no film", index(region), index(into))});
 }
 
-/// The circulation of the film that bursts is lost. What was a jump between its two sides at its rim is shared out:
-/// the constants of the two regions are chosen such that the jump vanishes in the mean [method sheet 10.1].
+/// The circulation of the film that bursts is lost, or becomes a sheet without film. What was a jump between its two
+/// sides at its rim is shared out between the films that go on there: the constants of the two regions are chosen such
+/// that the jump vanishes in the mean [method sheet 10.1].
 void VortexSheetSolver::pop(RegionId region, RegionId into) {
     double jump = 0.0, count = 0.0;
     for (const VertexId v : mesh().position.ids()) {
@@ -330,8 +376,16 @@ void VortexSheetSolver::pop(RegionId region, RegionId into) {
     if (count > 0.0)
         for (std::size_t i = 0; i < phi_.size(); ++i)
             if (topology_.entries.region[i] == region) phi_[i] += jump / count;
+    const bool stays = options_.popped_vorticity == PoppedVorticity::kFree;
+    const FoamMesh films = mesh();
+    const SheetTopology topology = topology_;
+    const Circulation phi = phi_;
+    const auto velocity = velocity_;
     edit_mesh([&] { tracker_->pop(region, into); });
-    impulse_ = impulse(mesh(), topology_, sheet_geometry(mesh(), topology_), phi_);
+    if (stays)
+        loose_.add(left_behind({films, topology, phi}, velocity, tracker_->maps(), {mesh(), topology_, phi_}));
+    else
+        impulse_ = impulse(mesh(), topology_, sheet_geometry(mesh(), topology_), phi_) + loose_.impulse();
 }
 
 void VortexSheetSolver::inflate() {
@@ -348,6 +402,7 @@ spatial::VortexSumOptions VortexSheetSolver::sum_options() const {
             .delta = options_.smoothing_length * input_.films->edge_length,
             .precision = options_.sum_in_double ? spatial::VortexSumOptions::Precision::kDouble
                                                 : spatial::VortexSumOptions::Precision::kSingle,
+            .device = input_.device,
             .tolerance = options_.sum_tolerance};
 }
 
@@ -367,9 +422,7 @@ double VortexSheetSolver::capillary_limit() const {
 }
 
 const Flow& VortexSheetSolver::observed() const {
-    if (!observed_)
-        observed_ = flow_at(mesh(), topology_, sheet_geometry(mesh(), topology_), phi_,
-                            blown_rings(input_.films->wires, time_), sum_options());
+    if (!observed_) observed_ = flow_of(mesh(), sheet_geometry(mesh(), topology_), time_, loose_);
     return *observed_;
 }
 

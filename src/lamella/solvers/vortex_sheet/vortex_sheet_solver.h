@@ -1,12 +1,11 @@
 #pragma once
 
+#include "lamella/mesh/tracker.h"
 #include "lamella/sim/registry.h"
 #include "lamella/sim/solver.h"
 #include "lamella/solvers/vortex_sheet/flow.h"
 #include "lamella/solvers/vortex_sheet/implicit_step.h"
 #include "lamella/solvers/vortex_sheet/options.h"
-
-#include "lamella/mesh/tracker.h"
 
 #include <functional>
 #include <memory>
@@ -39,6 +38,7 @@ public:
     const mesh::FoamMesh& mesh() const { return tracker_->mesh(); }
     const SheetTopology& topology() const { return topology_; }
     const Circulation& circulation() const { return phi_; }
+    const LooseSheets& loose_sheets() const { return loose_; }
     /// For tests that start from a flow of their own. @param phi  one value per entry of topology()
     void set_circulation(Circulation phi);
 
@@ -55,12 +55,22 @@ private:
     Circulation tension_rate(const mesh::FoamMesh& mesh, const SheetGeometry& geometry) const;
     void damp(double dt);
     mesh::FoamMesh films_ahead(double ahead) const;
+    Flow flow_of(const mesh::FoamMesh& mesh,
+                 const SheetGeometry& geometry,
+                 double time,
+                 const LooseSheets& loose) const;
     IdVector<mesh::VertexId, Vec3> velocity_at_midpoint(double dt);
-    void obey_wires(const mesh::FoamMesh& mesh, const SheetGeometry& geometry, double from, double to, Flow& flow);
+    void obey_wires(const mesh::FoamMesh& mesh,
+                    const SheetGeometry& geometry,
+                    const LooseSheets& loose,
+                    double from,
+                    double to,
+                    Flow& flow);
     void move(double dt);
     void check_triangles() const;
     void restore_volumes();
-    void restore_volumes(const IdVector<mesh::RegionId, double>& before, const std::vector<mesh::TopologyEvent>& events);
+    void restore_volumes(const IdVector<mesh::RegionId, double>& before,
+                         const std::vector<mesh::TopologyEvent>& events);
     void keep_impulse();
     void apply_events();
     void apply(const film::Event& event);
@@ -92,13 +102,14 @@ private:
     std::unique_ptr<mesh::Tracker> tracker_;
     SheetTopology topology_;
     Circulation phi_;
+    LooseSheets loose_;                        ///< what burst films left
     IdVector<mesh::VertexId, Vec3> velocity_;  ///< of the last step: predicts the next midpoint
     IdVector<mesh::VertexId, std::int32_t> wire_of_;
     double time_ = 0.0;
     std::int64_t steps_ = 0;
-    double step_ = 0.0;  ///< the last one
+    double step_ = 0.0;             ///< the last one
     std::int64_t evaluations_ = 0;  ///< of the flow in the last step, 0 if it was explicit
-    Vec3 impulse_;       ///< what the flow is to keep, without wires [m^4/s]
+    Vec3 impulse_;                  ///< what the flow is to keep, without wires [m^4/s]
     double wire_residual_ = 0.0;
     std::size_t next_event_ = 0;
     /// A bubble on its way to another volume.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lamella/core/host_device.h"
 #include "lamella/spatial/vortex_sum.h"
 
 namespace lamella::spatial::detail {
@@ -16,7 +17,7 @@ struct PairSums {
 ///   k2       K = y^3 (1 + 3 t)              psi = y + y^3
 ///   k3       K = y^3 (1 + 3/2 t + 15/2 t^2) psi = y + y^3 (1/2 + 3/2 t)
 template <VortexKernel kernel, bool with_potential, class Wide>
-LAMELLA_ALWAYS_INLINE void add_pair(
+LAMELLA_HOST_DEVICE LAMELLA_ALWAYS_INLINE void add_pair(
     PairSums<Wide>& sums, Wide tx, Wide ty, Wide tz, Wide x, Wide y, Wide z, Wide gx, Wide gy, Wide gz) {
     using T = typename Wide::Scalar;
     const auto constant = [](double c) { return Wide::all(static_cast<T>(c)); };

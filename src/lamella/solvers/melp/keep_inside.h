@@ -1,0 +1,27 @@
+#pragma once
+
+#include "lamella/core/vec.h"
+#include "lamella/solvers/melp/rims.h"
+
+#include <cstdint>
+#include <span>
+
+namespace lamella::melp {
+
+/// Particles of films near their rims.
+struct RimNeighbors {
+    std::span<const RimPiece> rims;
+    std::span<const Vec3> film;  ///< coarse particles: they tell on which side of a wire the film is
+    std::span<const std::int32_t> film_region;
+    double spacing;  ///< of these [m]
+    double margin;   ///< how near to a rim particles may come [m]
+};
+
+/// Particles that have come nearer to a rim than the margin, or beyond it by less than a spacing, are put back; of
+/// their velocity the part toward the rim is taken.
+void keep_inside(const RimNeighbors& near,
+                 std::span<const std::int32_t> region,
+                 std::span<Vec3> position,
+                 std::span<Vec3> velocity);
+
+}  // namespace lamella::melp
