@@ -219,6 +219,9 @@ TEST(MelpSolver, ConservesLiquidAndSurfactantToRounding) {
         EXPECT_NEAR(scalar(*solver, "liquid_mass") / liquid, 1.0, 1e-12);
         EXPECT_NEAR(scalar(*solver, "surfactant_amount") / surfactant, 1.0, 1e-12);
         EXPECT_EQ(scalar(*solver, "strays"), 0.0);
+        double on_coarse = 0.0;  // what the fine particles have given is all there
+        for (const double v : solver->films().liquid_volume) on_coarse += v;
+        EXPECT_NEAR(1000.0 * on_coarse / liquid, 1.0, 1e-6);
     }
 }
 

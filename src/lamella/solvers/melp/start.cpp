@@ -349,7 +349,7 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
         region.volume = ball ? ball->radius * region.area / 3.0 : volume[r];
         region.coarse = ball ? on_ball(*ball, particles_on(region.area, h)) : Sample{surface.vertex, surface.normal};
         const std::size_t fine = static_cast<std::size_t>(options.fine_ratio) * region.coarse.position.size();
-        region.fine = ball ? on_ball(*ball, fine) : on_triangles(surface, fine);
+        region.fine = ball ? on_ball(*ball, fine) : on_triangles(surface.triangle, fine);
         total_area += region.area;
         append(start, std::move(region), static_cast<std::int32_t>(index(r)), films.mesh.regions[r].target_volume,
                films.material, options, thickness);
