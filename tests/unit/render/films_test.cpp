@@ -81,8 +81,8 @@ TEST(ParticleAverage, TellsFilmsApart) {
     particles.value.insert(particles.value.end(), other.value.begin(), other.value.end());
     particles.region.resize(particles.position.size(), 2);
     const ParticleAverage average(particles, 1.0 / 30.0);
-    EXPECT_EQ(average.at({{0.1, 0.1, 0.0}}, {1, 0}), 1.0);
-    EXPECT_EQ(average.at({{0.1, 0.1, 0.0}}, {0, 2}), 3.0);
+    EXPECT_NEAR(*average.at({{0.1, 0.1, 0.0}}, {1, 0}), 1.0, 1e-12);
+    EXPECT_NEAR(*average.at({{0.1, 0.1, 0.0}}, {0, 2}), 3.0, 1e-12);
     EXPECT_NEAR(*average.at({{0.1, 0.1, 0.0}}, {1, 2}), 2.0, 1e-12);
     EXPECT_FALSE(average.at({{0.1, 0.1, 0.0}}, {0, 3}));
 }
