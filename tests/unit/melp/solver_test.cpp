@@ -252,7 +252,8 @@ damping = 1000.0
     EXPECT_LT(scalar(*solver, "density_spread"), 0.3);
 }
 
-/// A bubble that bursts ends as drops: all of its liquid is there, no number is lost, the frame shows a hole on the way.
+/// A bubble that bursts ends as drops: all of its liquid is there, no number is lost, the frame shows a hole on the
+/// way.
 TEST(MelpSolver, BurstsABubbleToTheEnd) {
     auto solver = solver_of(kBurst);
     solver->start({});

@@ -179,7 +179,8 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
         if (event.region == film::kRandomBubble || event.into != film::kLargestNeighbor)
             throw InputError("melp: [[event]] pop takes a region and no `into`: the bubble bursts into the air");
         if (options.fine_ratio == 0)
-            throw InputError("melp.fine_ratio = 0: films burst only with fine particles, whose liquid the edge gathers");
+            throw InputError(
+                "melp.fine_ratio = 0: films burst only with fine particles, whose liquid the edge gathers");
         if (bubble_count(films) > 1) throw InputError("melp: [[event]] in scenes of several bubbles is not built yet");
     }
     refuse_coarse_contacts(films);
