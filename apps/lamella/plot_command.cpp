@@ -12,6 +12,7 @@
 #include "plot/foam_panels.h"
 #include "plot/gnuplot.h"
 #include "plot/snapshot.h"
+#include "plot/table_panel.h"
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -31,6 +32,7 @@ struct PlotOptions {
     std::string frame = "last";
     std::string color = "radius";
     std::string panel;
+    TablePlot table;
 };
 
 ColorBy color_by(const std::string& name) {
@@ -127,7 +129,18 @@ void draw_together(Gnuplot& gnuplot, const Panels& panels, const fs::path& pictu
     gnuplot.draw(script + "unset multiplot\n", picture, kPanelWidth * columns, kPanelHeight * rows);
 }
 
+/// A table of a sweep, as one picture beside it.
+void plot_table(const PlotOptions& options) {
+    Gnuplot gnuplot;
+    const Panel panel = table_panel(gnuplot, io::read_csv_text(options.run), options.table);
+    const fs::path picture =
+        options.out.empty() ? fs::path(options.run).replace_extension(".png") : fs::path(options.out);
+    draw_alone(gnuplot, panel, picture);
+    fmt::print(stderr, "{}\n", picture.string());
+}
+
 void plot(const PlotOptions& options) {
+    if (fs::is_regular_file(options.run)) return plot_table(options);
     const RunReader run(options.run);
     Gnuplot gnuplot;
     const Panels panels = make_panels(gnuplot, run, options);
@@ -158,10 +171,14 @@ void add_plot_command(CLI::App& app) {
         add_command(app, "plot", "Draw the series and the frames of a run (needs gnuplot)",
                     "  lamella plot foam                                  every picture, in foam/plots\n"
                     "  lamella plot foam --out foam.svg                   the main ones in one picture\n"
-                    "  lamella plot foam --panel snapshot --frame 10 --color energy --out e.png\n");
+                    "  lamella plot foam --panel snapshot --frame 10 --color energy --out e.png\n"
+                    "  lamella plot table.csv --y growth_exponent         a table of `lamella sweep collect`\n");
     auto options = std::make_shared<PlotOptions>();
-    command->add_option("run", options->run, "Run folder")->required()->type_name("RUN");
-    command->add_option("--out", options->out, "One picture with the main panels; by default RUN/plots/*.png")
+    command->add_option("run", options->run, "Run folder, or a table of a sweep")
+        ->required()
+        ->type_name("RUN|TABLE.csv");
+    command
+        ->add_option("--out", options->out, "One picture with the main panels; by default RUN/plots/*.png, TABLE.png")
         ->type_name("FILE.png|.svg");
     command
         ->add_option("--panel", options->panel,
@@ -172,6 +189,12 @@ void add_plot_command(CLI::App& app) {
     command->add_option("--color", options->color, "What colors its bubbles: radius, energy or displacement")
         ->check(CLI::IsMember({"radius", "energy", "displacement"}))
         ->type_name("FIELD");
+    command->add_option("--y", options->table.y, "Of a table: the column to draw")->type_name("COLUMN");
+    command
+        ->add_option("--x", options->table.x, "Of a table: along which; by default time, or the first key with numbers")
+        ->type_name("COLUMN");
+    command->add_flag("--log-x", options->table.log_x, "Of a table: a logarithmic axis");
+    command->add_flag("--log-y", options->table.log_y, "Of a table: a logarithmic axis");
     command->callback([options] {
         try {
             plot(*options);
