@@ -273,8 +273,11 @@ std::vector<double> particle_volumes(const CoarseParticles& coarse,
     for (std::size_t r = 0; r < gas.size(); ++r) center[r] = center[r] / area[r];
     std::vector<double> share(coarse.size());
     parallel_for(coarse.size(), [&](std::size_t i) {
-        share[i] = star_volume(coarse, geometry, i, center[static_cast<std::size_t>(coarse.region[i])]) -
-                   0.5 * overlap_volume(coarse, geometry, i);
+        const Vec3& o = center[static_cast<std::size_t>(coarse.region[i])];
+        const Neighbors& other = geometry.neighbors.other;
+        share[i] = other.begin(i) == other.end(i)
+                       ? geometry.area[i] * dot(coarse.position[i] - o, geometry.normal[i]) / 3.0
+                       : star_volume(coarse, geometry, i, o) - 0.5 * overlap_volume(coarse, geometry, i);
     });
     for (std::size_t i = 0; i < coarse.size(); ++i) volume[static_cast<std::size_t>(coarse.region[i])] += share[i];
     for (std::size_t r = 0; r < gas.size(); ++r) volume[r] *= gas[r].calibration;

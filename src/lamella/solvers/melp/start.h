@@ -34,8 +34,9 @@ void refuse_unknown_films(const film::Problem& films, const Options& options);
 /// by the golden angle from the one before.
 std::vector<Vec3> fibonacci_sphere(std::size_t count);
 
-/// The volume within the triangles between the particles of each region, less half of what it shares with others, times
-/// the calibration of its gas [m^3].
+/// The volume that closes in under the particles of each region, sum a (x - o) . n / 3 about their center o, times the
+/// calibration of its gas [m^3]. Where other bubbles are near, stars of triangles take the place of a (x - o) . n / 3:
+/// they are right at folds but flicker with the choice of triangles; and half of what bubbles share is taken off.
 std::vector<double> particle_volumes(const CoarseParticles& coarse,
                                      const Geometry& geometry,
                                      const std::vector<Gas>& gas);
