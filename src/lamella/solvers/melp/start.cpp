@@ -386,9 +386,11 @@ std::vector<double> particle_volumes(const CoarseParticles& coarse,
     for (const RimPiece& piece : rims) center[static_cast<std::size_t>(piece.region)] = piece.a;  // in the plate
     std::vector<double> share(coarse.size());
     parallel_for(coarse.size(), [&](std::size_t i) {
-        const auto r = static_cast<std::size_t>(coarse.region[i]);
-        share[i] = gas[r].held ? geometry.area[i] * dot(coarse.position[i] - center[r], geometry.normal[i]) / 3.0
-                               : star_volume(coarse, geometry, i, center[r]) - 0.5 * overlap_volume(coarse, geometry, i);
+        const Vec3& o = center[static_cast<std::size_t>(coarse.region[i])];
+        const Neighbors& other = geometry.neighbors.other;
+        share[i] = other.begin(i) == other.end(i)
+                       ? geometry.area[i] * dot(coarse.position[i] - o, geometry.normal[i]) / 3.0
+                       : star_volume(coarse, geometry, i, o) - 0.5 * overlap_volume(coarse, geometry, i);
     });
     for (std::size_t i = 0; i < coarse.size(); ++i) volume[static_cast<std::size_t>(coarse.region[i])] += share[i];
     for (std::size_t r = 0; r < gas.size(); ++r) volume[r] *= gas[r].calibration;
