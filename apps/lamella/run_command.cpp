@@ -1,5 +1,4 @@
 #include "lamella/core/build_info.h"
-#include "lamella/core/cuda.h"
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/core/progress.h"
@@ -11,6 +10,7 @@
 
 #include "command_line.h"
 #include "commands.h"
+#include "device.h"
 #include "output.h"
 #include "progress_display.h"
 #include "signals.h"
@@ -47,12 +47,6 @@ void add_common_options(CLI::App& command, RunOptions& options) {
         .add_option("--progress", options.progress, "bar, plain or none; by default a bar on a terminal, else plain")
         ->check(CLI::IsMember({"bar", "plain", "none"}))
         ->type_name("STYLE");
-}
-
-void check_device(const std::string& device) {
-    if (device != "cuda") return;
-    const std::string fault = cuda_fault();
-    if (!fault.empty()) throw InputError(fault);
 }
 
 /// "runs/coarsening-2d" for scenes/bubble/coarsening-2d.toml.

@@ -12,6 +12,7 @@
 
 #include "command_line.h"
 #include "commands.h"
+#include "device.h"
 #include "output.h"
 #include "progress_display.h"
 #include "signals.h"
@@ -167,7 +168,7 @@ int work_in_pool(const SweepFolder& folder,
 }
 
 int run_command(const SweepOptions& options) {
-    if (options.device != "cpu") throw InputError("sweeps run on the CPU; leave --device out");
+    check_device(options.device);
     catch_stop_signals();
     const SweepFolder folder(options.folder);
     const std::vector<std::size_t> tasks = chosen_tasks(folder, options);
@@ -248,7 +249,7 @@ void add_run(CLI::App& sweep, const std::shared_ptr<SweepOptions>& options, int&
     run->add_option("--chunk", options->chunk, "Only every M-th task, from number K on")
         ->excludes(task)
         ->type_name("K/M");
-    run->add_option("--device", options->device, "Where to compute: cpu")
+    run->add_option("--device", options->device, "Where to compute: cpu or cuda; the runs share the GPU")
         ->check(CLI::IsMember({"cpu", "cuda"}))
         ->type_name("DEVICE");
     run->add_option("--progress", options->progress, "bar, plain or none; by default a bar on a terminal, else plain")

@@ -38,7 +38,7 @@ while [ $# -gt 0 ]; do
     shift
 done
 
-# name | scene | frame | options of lamella render | what it is (nothing: not on the page)
+# name | scene and options of lamella run | frame | options of lamella render | what it is (nothing: not on the page)
 pictures() {
     cat <<'TEXT'
 opening|equilibrium/triple-bubble-small|last|--camera -50,40,1.15 --size 1200x600|
@@ -53,12 +53,37 @@ carousel|vortex_sheet/carousel-small|10|--camera -75,35|Bubbles carried round
 cluster-popping|vortex_sheet/cluster-popping-small|10|--exposure 0.8|A cluster whose bubbles pop one after the other
 cube-oscillation|vortex_sheet/cube-oscillation-small|17||A cube of soap film swings around the sphere
 octahedron|vortex_sheet/octahedron-small|last|--exposure 0.9|Films on an octahedron of wire
+vortices-on-a-bubble|vortex_particle/sphere-vortices-small|40|--environment window|Vortices of both signs stir the liquid of a bubble
+stick|vortex_particle/stick-small --set vortex_particle.particles_in_frames=true|54|--camera -90,58,1.33|A stick was dragged through a film that is thicker on one side
+fingers|vortex_particle/rayleigh-taylor-small --set vortex_particle.particles_in_frames=true|36|--camera -90,58,1.3|Thick film comes down in fingers through thin film
+around-a-catenoid|vortex_particle/catenoid-small|40|--camera -62,24|A flow around a catenoid carries a vortex along
+drainage-of-a-square|vortex_particle/drainage-small|50|--camera -90,62,1.1|A film drains until its surfactant carries it
+drainage-of-a-disk|vortex_particle/drainage-disk-small|50|--camera -90,58,1.05|The same in a ring
+leapfrog|vortex_particle/leapfrog-small|30|--field vorticity --camera -90,90,1.08|Two pairs of vortices run one through the other
+taylor-vortices|vortex_particle/taylor-vortices-small|40|--field vorticity --camera -90,90,1.25|Two Taylor vortices part
+rossby-haurwitz|vortex_particle/rossby-haurwitz-small|20|--field vorticity|A Rossby-Haurwitz wave on a bubble that turns
+draining-bubble|melp/drainage-small|20||The liquid of a floating bubble sinks
+equalisation|melp/equalisation-small|10|--environment window|Uneven liquid pulls itself even
+bubble-at-rest|melp/bubble-at-rest-small|2||A bubble at rest
+oscillating-bubble|melp/oscillating-bubble-small|0||A bubble pulled out of shape
+double-bubble-of-particles|melp/double-bubble-small|last|--environment window|Two bubbles of particles share a film
 catenoid|equilibrium/catenoid-0.8-small|last||The catenoid between two rings
+catenoid-0.4|equilibrium/catenoid-0.4-small|last||The same between rings that are near
+catenoid-1.3|equilibrium/catenoid-1.3-small|last||The same, nearly as far apart as rings can be
+catenoid-unstable|equilibrium/catenoid-unstable-small|last|--environment window|The other catenoid, with the narrow neck: a saddle
+catenoid-collapse|equilibrium/catenoid-collapse-small|last||Rings too far apart: two disks are left
 frame-tetrahedron|equilibrium/frame-tetrahedron-small|last|--camera -40,22|Films on a tetrahedron of wire: Plateau's laws
 frame-cube|equilibrium/frame-cube-small|last|--ground|Films on a cube of wire, on a table
+frame-octahedron-cone|equilibrium/frame-octahedron-cone-small|last||The cone on an octahedron balances, and is not stable
 frame-octahedron|equilibrium/frame-octahedron-small|last|--environment window|Films on an octahedron of wire, at rest
-double-bubble-radii|equilibrium/melp-double-radii-0.02-small|last||A small bubble on a large one
-double-bubble-volumes|equilibrium/double-bubble-0.5-small|last|--environment window|A double bubble of volumes 1 and 1/2, in the light of windows
+double-bubble-radii|equilibrium/melp-double-radii-0.02-small|last||A small bubble on a large one: outer films of radii 2 and 5 cm
+double-bubble-radii-0.025|equilibrium/melp-double-radii-0.025-small|last||Outer films of radii 2.5 and 5 cm
+double-bubble-radii-0.035|equilibrium/melp-double-radii-0.035-small|last||Outer films of radii 3.5 and 5 cm
+double-bubble-radii-0.04|equilibrium/melp-double-radii-0.04-small|last||Outer films of radii 4 and 5 cm
+double-bubble-radii-0.05|equilibrium/melp-double-radii-0.05-small|last||Outer films of radii 5 and 5 cm
+double-bubble-1|equilibrium/double-bubble-1-small|last|--environment window|A double bubble of volumes 1 and 1
+double-bubble-volumes|equilibrium/double-bubble-0.5-small|last|--environment window|Volumes 1 and 1/2, in the light of windows
+double-bubble-0.125|equilibrium/double-bubble-0.125-small|last|--environment window|A double bubble of volumes 1 and 1/8
 triple-bubble|equilibrium/triple-bubble-small|last|--camera -50,40|Three bubbles of equal volume
 quadruple-bubble|equilibrium/quadruple-bubble-small|last||Four bubbles of equal volume
 cluster-6|equilibrium/cluster-6-small|last|--environment window --exposure 0.8|Six bubbles of equal volume
@@ -70,6 +95,18 @@ coarsening-2d|bubble/coarsening-2d-small|last|--field radius|A flat foam coarsen
 coarsening-3d|bubble/coarsening-3d-small|last|--ground|A foam coarsens
 flow-2d|bubble/flow-2d-small|last|--field velocity|A flat foam flows
 phase-separation|bubble/phase-separation-small|last||Bubbles gather and leave liquid between them
+paper-cube|vortex_sheet/paper-cube --until 0.5|5|--environment window|The cube of the paper's table, half a unit of time after its start
+paper-double-bubble|vortex_sheet/paper-double-bubble --until 0.5|5|--camera -80,25|The double bubble of the paper's table
+paper-cluster-popping|vortex_sheet/paper-cluster-popping --until 1|1|--exposure 0.8|The ten bubbles of the paper's table before the first bursts
+double-bubble-equal|equilibrium/double-bubble-small|last|--ground|Two bubbles of one size, at rest
+melp-double-volumes-0.02|equilibrium/melp-double-volumes-0.02-small|last||Bubbles that had radii of 2 and 5 cm before they met
+melp-double-volumes-0.025|equilibrium/melp-double-volumes-0.025-small|last||Bubbles that had radii of 2.5 and 5 cm before they met
+melp-double-volumes-0.035|equilibrium/melp-double-volumes-0.035-small|last||Bubbles that had radii of 3.5 and 5 cm before they met
+melp-double-volumes-0.04|equilibrium/melp-double-volumes-0.04-small|last||Bubbles that had radii of 4 and 5 cm before they met
+melp-double-volumes-0.05|equilibrium/melp-double-volumes-0.05-small|last||Bubbles that had radii of 5 and 5 cm before they met
+cluster-5|equilibrium/cluster-5-small|last|--exposure 0.9|Five bubbles of equal volume
+cluster-8|equilibrium/cluster-8-small|last|--exposure 0.8|Eight bubbles of equal volume
+cluster-10|equilibrium/cluster-10-small|last|--environment window --exposure 0.7|Ten bubbles of equal volume
 TEXT
 }
 
@@ -83,8 +120,10 @@ wanted() {
 mkdir -p "$runs"
 while IFS='|' read -r name scene frame options text; do
     wanted "$name" || continue
-    run=$runs/${scene//\//-}
-    [ -f "$run/frames.pvd" ] || "$program" run "$scene" --out "$run" --overwrite --progress none </dev/null
+    run=${scene%% *}
+    run=$runs/${run//\//-}
+    # shellcheck disable=SC2086  # scene and options are words
+    [ -f "$run/frames.pvd" ] || "$program" run $scene --out "$run" --overwrite --progress none </dev/null
     case $options in *--size*) ;; *) options="$options --size $size" ;; esac
     # shellcheck disable=SC2086  # options are words
     "$program" render "$run" --frame "$frame" --samples "$samples" --progress none --out "$runs/$name.png" \
@@ -102,7 +141,7 @@ done < <(pictures)
     row="|"
     count=0
     while IFS='|' read -r name scene frame options text; do
-        [ -n "$text" ] || continue
+        [ -n "$text" ] && [ -f "$here/$name.jpg" ] || continue
         row+=" ![$text]($name.jpg) $text: \`$scene\`${options:+, \`$options\`} |"
         count=$((count + 1))
         if [ $((count % 3)) -eq 0 ]; then

@@ -15,10 +15,10 @@ SCRIPT = pathlib.Path(os.environ["LAMELLA_SOURCE"]) / "tools" / "blender" / "imp
 
 class Blender(ProgramTest):
 
-    def blender(self, *arguments):
+    def blender(self, *arguments, script=SCRIPT):
         # Debian's Blender looks for its Python modules beside the first python3 on the PATH: it must be Debian's.
         environment = os.environ | {"PATH": os.pathsep.join(("/usr/bin", "/bin", os.environ["PATH"]))}
-        return subprocess.run(["blender", "--background", "--factory-startup", "--python", SCRIPT, "--", *map(str, arguments)],
+        return subprocess.run(["blender", "--background", "--factory-startup", "--python", script, "--", *map(str, arguments)],
                               capture_output=True, text=True, check=False, timeout=500, env=environment)
 
     def report(self, result):
@@ -48,6 +48,31 @@ class Blender(ProgramTest):
         header = file.read_bytes().split(b"end_header")[0].decode().split()
         self.assertEqual(self.report(self.blender(file, "--report"))["bubble_vertices"],
                          42 * int(header[header.index("vertex") + 1]))
+
+    def test_takes_films_and_solids_from_gltf(self):
+        """Blender's own importer: one object per film and one for the stick, in meters, with the thickness of each vertex."""
+        run, file = self.folder / "run", self.folder / "stick.glb"
+        self.assert_exit(lamella("run", "vortex_particle/stick-small", "--out", run, "--until", "0.05"), 0)
+        self.assert_exit(lamella("export", run, "--to", "glb", "--frame", "last", "--out", file), 0)
+        script = self.folder / "look.py"
+        script.write_text(f"""import bpy, json, sys
+bpy.ops.wm.read_factory_settings(use_empty=True)
+bpy.ops.import_scene.gltf(filepath={str(file)!r})
+seen = {{o.name: {{"size": list(o.dimensions), "at": [sum(v.co[k] for v in o.data.vertices) / len(o.data.vertices) for k in range(3)],
+                  "colors": len(o.data.color_attributes)}} for o in bpy.data.objects if o.type == "MESH"}}
+print("lamella " + json.dumps(seen))
+""")
+        seen = self.report(self.blender(script=script))
+        films = [name for name in seen if name.startswith("film_")]
+        self.assertEqual(sorted(seen), sorted([*films, "solids"]))
+        self.assertEqual(len(films), 1)
+        for film in films:
+            for size, expected in zip(seen[film]["size"], (3.2, 1.0, 0.0)):
+                self.assertAlmostEqual(size, expected, delta=1e-5)
+            self.assertGreater(seen[film]["colors"], 0)
+        for k, (place, expected) in enumerate(zip(seen["solids"]["at"], (0.45, 0.503, 0.0))):
+            self.assertAlmostEqual(place, expected, delta=1e-5)
+            self.assertAlmostEqual(seen["solids"]["size"][k], 0.2, delta=1e-3)
 
     def test_says_what_it_cannot_read(self):
         result = self.blender(self.folder / "foam.toml")

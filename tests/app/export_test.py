@@ -5,6 +5,7 @@ import struct
 import unittest
 
 from program import ProgramTest, lamella
+from usda_reader import UsdError, read_usda
 
 
 class Drawing(ProgramTest):
@@ -47,11 +48,60 @@ class Drawing(ProgramTest):
         for line in ("property double nx", "property double thickness_nm", "property uchar red", "comment thickness_assumed 1"):
             self.assertIn(line, headers[1])
 
-    def test_usda_and_obj_go_to_a_pipe(self):
+    def usda(self, run):
+        result = lamella("export", run, "--to", "usda", "--frame", "last", "--out", "-")
+        self.assert_exit(result, 0)
+        return result.stdout
+
+    def test_usda_of_films_is_what_usd_takes(self):
+        root, metadata = read_usda(self.usda(self.films()))
+        self.assertEqual((metadata["metersPerUnit"], metadata["upAxis"]), ("1", '"Z"'))
+        self.assertEqual([(child.kind, child.name) for child in root.children], [("Mesh", "films")])
+        films = root.children[0]
+        self.assertLessEqual({"primvars:thickness_nm", "primvars:displayColor", "normals"}, set(films.attributes))
+        points, corners, normals = (films.value(name) for name in ("points", "faceVertexIndices", "normals"))
+        back, front = films.value("primvars:region_back"), films.value("primvars:region_front")
+        self.assertEqual(set(zip(back, front)), {(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)})
+        volume = dict.fromkeys(range(4), 0.0)  # of each region, by its films: USD's corners go counterclockwise around normals
+        for face, (b, f) in enumerate(zip(back, front)):
+            p, q, r = (points[int(c)] for c in corners[3 * face:3 * face + 3])
+            six = sum(p[i] * (q[j] * r[k] - q[k] * r[j]) for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)))
+            volume[b] += six / 6
+            volume[f] -= six / 6
+            facing = [(q[i] - p[i]) * (r[j] - p[j]) - (q[j] - p[j]) * (r[i] - p[i]) for i, j in ((1, 2), (2, 0), (0, 1))]
+            normal = normals[int(corners[3 * face])]
+            self.assertGreater(sum(a * c for a, c in zip(facing, normal)), 0.0)
+        for region in (2, 3):
+            self.assertAlmostEqual(volume[region] / volume[1], 1.0, delta=1e-3)  # three bubbles of one size
+
+    def test_usda_of_balls_and_solids_is_what_usd_takes(self):
+        root, _ = read_usda(self.usda(self.foam()))
+        balls = root.children[0]
+        self.assertEqual((balls.kind, len(root.children)), ("Points", 1))
+        self.assertEqual(len(balls.value("widths")), len(balls.value("points")))
+        run = self.folder / "stick"
+        self.assert_exit(lamella("run", "vortex_particle/stick-small", "--out", run, "--until", "0.1"), 0)
+        root, _ = read_usda(self.usda(run))
+        self.assertEqual([child.name for child in root.children], ["films", "solid_0"])
+        stick = root.children[1]
+        self.assertEqual(stick.value("radius"), 0.1)
+        for x, expected in zip(stick.value("xformOp:translate"), (0.5, 0.503, 0.0)):  # 1 m/s for 0.1 s
+            self.assertAlmostEqual(x, expected, delta=1e-9)
+
+    def test_the_reader_of_usda_refuses_what_usd_would(self):
+        text = self.usda(self.films())
+        read_usda(text)
+        for before, after in (("#usda 1.0", "#usda"), ("point3f[] points = [(", "point3f[] points = [(0, 0, 0), ("),
+                              ("int[] faceVertexCounts = [3", "int[] faceVertexCounts = [4"), ("= [(", "= [((", ), ('"vertex"', '"uniform"'),
+                              ("normal3f[] normals", "normals3f[] normals"), ('def Mesh "films"', 'def Mesh "the films"'),
+                              ("primvars:region_back", "region_back"), ("faceVertexIndices = [", "faceVertexIndices = [-1, "),
+                              ("float3[] extent = [(", "float3[] extent = [(9"), ("\n}\n", "\n"), ("uniform bool", "bool")):
+            self.assertIn(before, text)
+            with self.assertRaises(UsdError, msg=after):
+                read_usda(text.replace(before, after, 1))
+
+    def test_obj_goes_to_a_pipe(self):
         run = self.films()
-        text = lamella("export", run, "--to", "usda", "--frame", "last", "--out", "-").stdout
-        self.assertTrue(text.startswith("#usda 1.0\n"))
-        self.assertIn("primvars:thickness_nm", text)
         text = lamella("export", run, "--to", "obj", "--baked", "--frame", "last", "--out", "-").stdout
         self.assertIn("\nvn ", text)
 

@@ -84,6 +84,15 @@ TEST(FrameMessage, KeepsWholeNumbersWhole) {
         EXPECT_EQ(std::fmod(value, 10.0f), 0.0f);
 }
 
+TEST(FrameMessage, HoldsSolids) {
+    sim::Frame frame = three_sheets(1);
+    EXPECT_EQ(frame_message(frame).find("\"solids\""), std::string::npos);
+    frame.solids = {{{{1.0, 2.0, 3.0}}, 0.5}, {{{4.0, 5.0, 6.0}}, 0.25}};
+    const std::string bytes = frame_message(frame);
+    EXPECT_EQ(floats(bytes, "solids", "position"), (std::vector<float>{1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(floats(bytes, "solids", "radius"), (std::vector<float>{0.5, 0.25}));
+}
+
 TEST(FrameMessage, ThinsOutAndSaysSo) {
     DetailLimits limits;
     limits.triangles = 200;

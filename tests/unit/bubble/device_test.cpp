@@ -103,7 +103,6 @@ TEST_P(OnDevice, KnowsEveryToleranceAndScaling) {
     o.gas.medium_scaling = MediumScaling::kLsw;
     o.integrator.norm = ErrorNorm::kRms;
     o.integrator.relative_error = true;
-    o.compat.removal = true;
     expect_the_same_run<3>(GetParam(), o, 3.0);
     o.gas.exchange_rate = 0.0;
     o.time_unit = TimeUnit::kMechanical;

@@ -93,6 +93,25 @@ TEST(Glb, MakesPolyhedraOfBalls) {
     EXPECT_FALSE(holds(parts.json, "iridescence"));
 }
 
+TEST(Glb, HoldsSolidsAsAMeshOfTheirOwn) {
+    sim::Frame frame = two_films();
+    frame.solids = {{{{1.0, 2.0, 3.0}}, 0.5}};
+    const GlbParts parts = parts_of(text_of(io::write_glb, frame));
+    // Twelve corners of an icosahedron, and 30, 120, 480 middles of edges.
+    EXPECT_TRUE(holds(parts.json, R"("name":"solids","primitives":[{"attributes":{"POSITION":10,"NORMAL":11},)"))
+        << parts.json;
+    EXPECT_TRUE(holds(parts.json, R"("count":642,"type":"VEC3","min":[0.5,)")) << parts.json;
+    EXPECT_TRUE(holds(parts.json, R"({"name":"solids","pbrMetallicRoughness":{"baseColorFactor":[0.05,)"));
+}
+
+TEST(Usda, HoldsSolidsAsSpheres) {
+    sim::Frame frame = two_films();
+    frame.solids = {{{{1.0, 2.0, 3.0}}, 0.5}};
+    const std::string text = text_of(io::write_usda, frame);
+    EXPECT_TRUE(holds(text, "    def Sphere \"solid_0\"\n    {\n        double radius = 0.5\n"));
+    EXPECT_TRUE(holds(text, "double3 xformOp:translate = (1, 2, 3)\n"));
+}
+
 TEST(Usda, IsThisText) {
     EXPECT_EQ(text_of(io::write_usda, two_films()), R"(#usda 1.0
 (

@@ -65,6 +65,7 @@ inline void add_surface(sim::Frame& frame, std::uint32_t triangles) {
                            awkward_field("force", "N", 3, triangles)};
     surface.region_fields = {awkward_field("pressure", "Pa", 1, 6), whole_field("closed", 6),
                              awkward_field("centroid", "m", 3, 6)};
+    frame.solids = {{{{0.1, -0.0, 5e-324}}, 0.25}, {{{-1e300, 2.0, 1.0 / 3.0}}, 1e-300}};
 }
 
 inline sim::Frame described_frame() {
@@ -150,6 +151,11 @@ inline void expect_same(const sim::Frame& a, const sim::Frame& b) {
     EXPECT_EQ(bits(a.points.radius), bits(b.points.radius));
     EXPECT_EQ(a.points.length_unit, b.points.length_unit);
     expect_same(a.points.fields, b.points.fields);
+    ASSERT_EQ(a.solids.size(), b.solids.size());
+    for (std::size_t i = 0; i < a.solids.size(); ++i) {
+        EXPECT_EQ(bits(std::vector{a.solids[i].center}), bits(std::vector{b.solids[i].center}));
+        EXPECT_EQ(a.solids[i].radius, b.solids[i].radius);
+    }
 }
 
 }  // namespace lamella::test

@@ -122,6 +122,9 @@ TEST(Vtp, RefusesFramesThatContradictThemselves) {
     expect_refused([](auto& f) { f.surface.regions[1][0] = 6; }, "region 6 beside it, but the fields of regions tell of 6");
     expect_refused([](auto& f) { f.surface.regions[1][1] = -1; }, "region -1 beside it");
     expect_refused([](auto& f) { f.scalars[0].name = "region_pressure"; }, "\"region_pressure\" twice");
+    expect_refused([](auto& f) { f.scalars[0].name = "solid_radius"; }, "\"solid_radius\" twice");
+    expect_refused([](auto& f) { f.solids[1].radius = 0.0; }, "solid 1 has no place or no size");
+    expect_refused([](auto& f) { f.solids[0].center[2] = kNan; }, "solid 0 has no place or no size");
 }
 
 TEST(Vtp, ReadsFilesFromBeforeFieldsOfRegions) {
@@ -166,6 +169,10 @@ TEST(Vtp, SaysWhatIsWrongWithAFile) {
     expect_refused("NumberOfTuples=\"6\" region_field=\"0\"", "NumberOfTuples=\"1099511627776\" region_field=\"0\"",
                    "instead of");
     expect_refused("Name=\"region_pressure\"", "Name=\"regio_pressure\"", "is none of lamella's");
+    expect_refused("NumberOfTuples=\"2\" format=\"appended\"", "NumberOfTuples=\"1\" format=\"appended\"",
+                   "instead of");
+    expect_refused("Name=\"solid_center\"", "Name=\"solid_radius\"", "does not fit to the other solids");
+    expect_refused("Name=\"solid_radius\"", "Name=\"solid_radii\"", "is none of lamella's");
     expect_refused("_", "-", "f.vtp");
 }
 

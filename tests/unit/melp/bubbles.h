@@ -34,10 +34,10 @@ inline std::unique_ptr<MelpSolver> solver_of(const std::string& tables,
 inline std::unique_ptr<MelpSolver> bubble(double coarse_particles,
                                           const std::string& options,
                                           const std::string& material = "") {
-    auto solver = solver_of("[material]\nsurface_tension = " + std::to_string(kTension) + "\nthickness = 5e-7\nliquid_density = 1000.0\nsurfactant = 1e-7\n" +
-                            material + "\n[[bubble]]\nradius = " + std::to_string(kRadius) +
-                            "\n[resolution]\nedge_length = " + std::to_string(edge_for(coarse_particles)) +
-                            "\n[melp]\n" + options);
+    auto solver = solver_of("[material]\nsurface_tension = " + std::to_string(kTension) +
+                            "\nthickness = 5e-7\nliquid_density = 1000.0\nsurfactant = 1e-7\n" + material +
+                            "\n[[bubble]]\nradius = " + std::to_string(kRadius) + "\n[resolution]\nedge_length = " +
+                            std::to_string(edge_for(coarse_particles)) + "\n[melp]\n" + options);
     solver->start({});
     return solver;
 }

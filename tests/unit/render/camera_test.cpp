@@ -44,5 +44,44 @@ TEST(Camera, SeesTheWholeBallFromWhereItIsTold) {
         }
 }
 
+/// The film with x, y, z for its y, z, x or z, x, y.
+sim::Frame turned(sim::Frame frame, std::size_t by) {
+    for (Vec3& p : frame.surface.position) p = {{p[(3 - by) % 3], p[(4 - by) % 3], p[(5 - by) % 3]}};
+    return frame;
+}
+
+TEST(UsualView, LooksOnFilmsInAPlane) {
+    const auto direction = [](const View& view) {
+        return (Camera(view, {}, 10, 10).position()) / norm(Camera(view, {}, 10, 10).position());
+    };
+    for (const std::size_t by : {0U, 1U, 2U}) {
+        const sim::Frame film = turned(flat_film(3), by);
+        const Vec3 normal{{by == 1 ? 1.0 : 0.0, by == 2 ? 1.0 : 0.0, by == 0 ? 1.0 : 0.0}};
+        EXPECT_GT(std::abs(dot(direction(usual_view(film)), normal)), 0.7) << by;
+    }
+    EXPECT_EQ(usual_view(flat_film(3)).azimuth_deg, -90.0);  // y goes up
+    const sim::Frame film = flat_film(3);
+    const Camera camera(usual_view(film), frame_bounds(film), 400, 300);
+    double farthest = 0.0;  // of the film's points from the middle of the picture, its edges being 1
+    for (const Vec3& p : film.surface.position) {
+        const Vec3 ray = p - camera.position(), ahead = -1.0 * camera.position();
+        const Vec3 right = camera.direction(400.0, 150.0) - camera.direction(0.0, 150.0),
+                   up = camera.direction(200.0, 0.0) - camera.direction(200.0, 300.0);
+        const auto share = [&](const Vec3& axis, const Vec3& edge) {
+            const Vec3 n = axis / norm(axis);
+            return std::abs(dot(ray, n) / dot(ray, ahead)) / std::abs(dot(edge, n) / dot(edge, ahead));
+        };
+        farthest =
+            std::max({farthest, share(right, camera.direction(400.0, 150.0)), share(up, camera.direction(200.0, 0.0))});
+    }
+    EXPECT_LT(farthest, 1.0);
+    EXPECT_GT(farthest, 0.85);
+    EXPECT_EQ(usual_view(sphere_film(2)).elevation_deg, View{}.elevation_deg);
+    sim::Frame foam = one_ball();
+    foam.box = sim::Box{.dimension = 2, .origin = {}, .lengths = {{1.0, 1.0, 0.0}}, .periodic = {}};
+    EXPECT_EQ(usual_view(foam).elevation_deg, 90.0);
+    EXPECT_EQ(usual_view({}).elevation_deg, View{}.elevation_deg);
+}
+
 }  // namespace
 }  // namespace lamella::render

@@ -51,19 +51,56 @@ TEST(FilmPatches, FindRimsAndNormals) {
     }
 }
 
-TEST(ParticleAverage, FollowsWhatParticlesCarry) {
-    std::vector<Vec3> places;
-    std::vector<double> constant, slope;
+/// A grid of 61 x 61 particles on the square film, each with what `value` says of its place.
+template <class Value>
+FilmParticles grid_of_particles(Value&& value) {
+    FilmParticles particles;
     for (int j = -30; j <= 30; ++j)
         for (int i = -30; i <= 30; ++i) {
-            places.push_back({{i / 30.0, j / 30.0, 0.0}});
-            constant.push_back(4e-7);
-            slope.push_back(1.0 + i / 30.0);
+            particles.position.push_back({{i / 30.0, j / 30.0, 0.0}});
+            particles.value.push_back(value(i / 30.0));
         }
-    const ParticleAverage one(places, constant), two(places, slope);
-    EXPECT_NEAR(one.at({{0.123, -0.4, 0.0}}), 4e-7, 1e-18);
-    EXPECT_NEAR(two.at({{0.2, 0.1, 0.0}}), 1.2, 0.01);
-    EXPECT_EQ(one.at({{50.0, 0.0, 0.0}}), 0.0);
+    return particles;
+}
+
+TEST(ParticleAverage, FollowsWhatParticlesCarry) {
+    const double spacing = particle_spacing(flat_film(2).surface, 61 * 61);
+    EXPECT_NEAR(spacing, 2.0 / 61.0, 1e-12);
+    const ParticleAverage one(grid_of_particles([](double) { return 4e-7; }), spacing);
+    const ParticleAverage two(grid_of_particles([](double x) { return 1.0 + x; }), spacing);
+    EXPECT_NEAR(*one.at({{0.123, -0.4, 0.0}}, {0, 1}), 4e-7, 1e-18);
+    EXPECT_NEAR(*two.at({{0.2, 0.1, 0.0}}, {0, 1}), 1.2, 0.01);
+    EXPECT_FALSE(one.at({{50.0, 0.0, 0.0}}, {0, 1}));
+}
+
+TEST(ParticleAverage, TellsFilmsApart) {
+    FilmParticles particles = grid_of_particles([](double) { return 1.0; });
+    const FilmParticles other = grid_of_particles([](double) { return 3.0; });
+    particles.region.assign(particles.position.size(), 1);
+    particles.position.insert(particles.position.end(), other.position.begin(), other.position.end());
+    particles.value.insert(particles.value.end(), other.value.begin(), other.value.end());
+    particles.region.resize(particles.position.size(), 2);
+    const ParticleAverage average(particles, 1.0 / 30.0);
+    EXPECT_NEAR(*average.at({{0.1, 0.1, 0.0}}, {1, 0}), 1.0, 1e-12);
+    EXPECT_NEAR(*average.at({{0.1, 0.1, 0.0}}, {0, 2}), 3.0, 1e-12);
+    EXPECT_NEAR(*average.at({{0.1, 0.1, 0.0}}, {1, 2}), 2.0, 1e-12);
+    EXPECT_FALSE(average.at({{0.1, 0.1, 0.0}}, {0, 3}));
+}
+
+TEST(ThicknessParticles, AreTheFineOnes) {
+    sim::Frame frame = flat_film(2, 5e-7);
+    EXPECT_FALSE(thickness_particles(frame));
+    frame.points.position = {{{0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}, {{0.0, 0.5, 0.0}}};
+    frame.points.fields = {{"thickness", "m", 1, false, {1e-7, 2e-7, 3e-7}}, {"region", "-", 1, true, {1, 1, 2}}};
+    EXPECT_EQ(thickness_particles(frame)->value, (std::vector<double>{1e-7, 2e-7, 3e-7}));
+    frame.points.fields.push_back({"fine", "-", 1, true, {0, 1, 1}});
+    EXPECT_EQ(thickness_particles(frame)->value, (std::vector<double>{2e-7, 3e-7}));
+    EXPECT_EQ(thickness_particles(frame)->region, (std::vector<std::int32_t>{1, 2}));
+    frame.points.fields.back().values = {0, 0, 0};  // films of even thickness: their vertices know
+    EXPECT_FALSE(thickness_particles(frame));
+    frame.points.fields.back().values = {1, 1, 1};
+    frame.points.radius = {1.0, 1.0, 1.0};  // balls carry no film
+    EXPECT_FALSE(thickness_particles(frame));
 }
 
 TEST(AssumedThickness, IsThinAboveAndThickBelow) {

@@ -146,6 +146,51 @@ TEST_F(RenderFrame, TakesThicknessesFromParticles) {
     EXPECT_LT(largest_difference(color_at(picture, 24, 18), optics::FilmColors().reflected(300e-9, 1.0)), 5e-4);
 }
 
+TEST_F(RenderFrame, ShowsParticlesAtTheirOwnResolution) {
+    // Stripes of 100 and 220 nm, 0.2 wide, on a film whose four vertices only know the mean: black-and-white.
+    sim::Frame frame = flat_film(1, 160e-9);
+    std::vector<double> thickness;
+    for (int j = 0; j < 100; ++j)
+        for (int i = 0; i < 100; ++i) {
+            frame.points.position.push_back({{0.02 * i - 0.99, 0.02 * j - 0.99, 0.0}});
+            thickness.push_back(i / 10 % 2 == 0 ? 100e-9 : 220e-9);
+        }
+    frame.points.fields.push_back({"thickness", "m", 1, false, thickness});
+    PictureOptions options = from_above();
+    options.width = options.height = 100;
+    const Picture picture = render_frame(frame, options);
+    EXPECT_EQ(picture.thickness_origin, "particles");
+    const optics::FilmColors colors;
+    const double tall = colors.reflected(100e-9, 1.0)[1], low = colors.reflected(220e-9, 1.0)[1];
+    const Camera camera(options.view, frame_bounds(frame), 100, 100);
+    const auto seen_at = [&](std::size_t column) {
+        const Vec3 ray = camera.direction(static_cast<double>(column) + 0.5, 50.0);
+        return camera.position()[2] * ray[0] / -ray[2];
+    };
+    for (int stripe = 1; stripe < 9; ++stripe) {
+        const double x = 0.2 * stripe - 0.9;  // its middle; the particles there lie five spacings from its edges
+        std::size_t column = 0;
+        while (seen_at(column) < x) ++column;
+        EXPECT_NEAR(color_at(picture, column, 50)[1], stripe % 2 == 0 ? tall : low, 0.03 * std::abs(tall - low))
+            << stripe;
+    }
+}
+
+TEST_F(RenderFrame, ShowsSolids) {
+    sim::Frame frame = flat_film(3, 100e-9);
+    frame.solids = {{{{0.0, 0.0, 0.0}}, 0.4}};
+    PictureOptions options = from_above();
+    options.background = "transparent";
+    const Picture picture = render_frame(frame, options);
+    EXPECT_EQ(picture.light.pixel(24, 18)[3], 1.0F);  // opaque
+    EXPECT_LT(picture.light.pixel(40, 18)[3], 0.1F);  // the film beside it
+    options.field = "thickness";                      // fields color films; solids stay as they are
+    EXPECT_LT(color_at(render_frame(frame, options), 24, 18)[1], 0.2);
+
+    frame.solids[0].center = {{0.0, 0.0, 3.0}};  // what the camera looks at has them in it
+    EXPECT_NEAR(frame_bounds(frame).center[2], 1.7, 1e-12);
+}
+
 TEST_F(RenderFrame, SaysThatAThicknessIsAssumed) {
     EXPECT_EQ(render_frame(sphere_film(1), from_above()).thickness_origin.substr(0, 8), "assumed:");
 }

@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "../../unit/melp/bubbles.h"
+#include <algorithm>
 
 namespace lamella::melp {
 namespace {

@@ -90,7 +90,8 @@ std::vector<std::uint8_t> crowded(const Geometry& g,
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < coarse.size(); ++i)
         if (has_burst(coarse, burst, i)) order.push_back(i);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return strength[a] > strength[b]; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return strength[a] > strength[b]; });
     std::vector<std::uint8_t> stays(coarse.size(), 0), marked(coarse.size(), 0);
     const Neighbors& same = g.neighbors.same;
     for (const std::size_t i : order) {

@@ -226,8 +226,8 @@ std::vector<FreeCluster> free_clusters(const NormalProblem& p) {
         const RimPiece* rim = nullptr;
         for (const std::size_t i : group)
             if (p.gas[region_of(p.coarse, i)].held) rim = rim_of(p, region_of(p.coarse, i));
-        const bool torn = std::any_of(group.begin(), group.end(),
-                                      [&](std::size_t i) { return p.gas[region_of(p.coarse, i)].burst; });
+        const bool torn =
+            std::any_of(group.begin(), group.end(), [&](std::size_t i) { return p.gas[region_of(p.coarse, i)].burst; });
         if (torn) continue;
         if (rim == nullptr)
             free.emplace_back(p, std::move(group), all_directions());

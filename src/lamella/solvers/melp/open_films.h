@@ -4,6 +4,7 @@
 #include "lamella/solvers/melp/options.h"
 #include "lamella/solvers/melp/rims.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 

@@ -179,7 +179,8 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
         if (event.region == film::kRandomBubble || event.into != film::kLargestNeighbor)
             throw InputError("melp: [[event]] pop takes a region and no `into`: the bubble bursts into the air");
         if (options.fine_ratio == 0)
-            throw InputError("melp.fine_ratio = 0: films burst only with fine particles, whose liquid the edge gathers");
+            throw InputError(
+                "melp.fine_ratio = 0: films burst only with fine particles, whose liquid the edge gathers");
         if (bubble_count(films) > 1) throw InputError("melp: [[event]] in scenes of several bubbles is not built yet");
     }
     refuse_coarse_contacts(films);
@@ -349,7 +350,7 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
         region.volume = ball ? ball->radius * region.area / 3.0 : volume[r];
         region.coarse = ball ? on_ball(*ball, particles_on(region.area, h)) : Sample{surface.vertex, surface.normal};
         const std::size_t fine = static_cast<std::size_t>(options.fine_ratio) * region.coarse.position.size();
-        region.fine = ball ? on_ball(*ball, fine) : on_triangles(surface, fine);
+        region.fine = ball ? on_ball(*ball, fine) : on_triangles(surface.triangle, fine);
         total_area += region.area;
         append(start, std::move(region), static_cast<std::int32_t>(index(r)), films.mesh.regions[r].target_volume,
                films.material, options, thickness);
@@ -385,9 +386,11 @@ std::vector<double> particle_volumes(const CoarseParticles& coarse,
     for (const RimPiece& piece : rims) center[static_cast<std::size_t>(piece.region)] = piece.a;  // in the plate
     std::vector<double> share(coarse.size());
     parallel_for(coarse.size(), [&](std::size_t i) {
-        const auto r = static_cast<std::size_t>(coarse.region[i]);
-        share[i] = gas[r].held ? geometry.area[i] * dot(coarse.position[i] - center[r], geometry.normal[i]) / 3.0
-                               : star_volume(coarse, geometry, i, center[r]) - 0.5 * overlap_volume(coarse, geometry, i);
+        const Vec3& o = center[static_cast<std::size_t>(coarse.region[i])];
+        const Neighbors& other = geometry.neighbors.other;
+        share[i] = other.begin(i) == other.end(i)
+                       ? geometry.area[i] * dot(coarse.position[i] - o, geometry.normal[i]) / 3.0
+                       : star_volume(coarse, geometry, i, o) - 0.5 * overlap_volume(coarse, geometry, i);
     });
     for (std::size_t i = 0; i < coarse.size(); ++i) volume[static_cast<std::size_t>(coarse.region[i])] += share[i];
     for (std::size_t r = 0; r < gas.size(); ++r) volume[r] *= gas[r].calibration;

@@ -40,9 +40,10 @@ void refuse_unknown_films(const film::Problem& films, const Options& options);
 /// by the golden angle from the one before.
 std::vector<Vec3> fibonacci_sphere(std::size_t count);
 
-/// The volume that each region's films close in: within the triangles between their particles, less half of what they share with
-/// others; of films that stand on a plate sum a (x - o) . n / 3 about a point o of the plate. Times the calibration of its gas
-/// [m^3]; without meaning for films without gas.
+/// The volume that closes in under the particles of each region, sum a (x - o) . n / 3 about their center o, or a point
+/// of the plate that they stand on, times the calibration of its gas [m^3]. Where other bubbles are near, stars of
+/// triangles take the place of a (x - o) . n / 3: they are right at folds but flicker with the choice of triangles; and
+/// half of what bubbles share is taken off. Without meaning for films without gas.
 std::vector<double> particle_volumes(const CoarseParticles& coarse,
                                      const Geometry& geometry,
                                      std::span<const RimPiece> rims,
