@@ -295,7 +295,7 @@ TEST(VortexParticleSolver, RefusesWhatItCannotDo) {
     EXPECT_TRUE(says(film + "[[solid]]\nradius=0.1\nfree=true\nmass=1.0\n" + moving, "free = true on films that move"));
     EXPECT_TRUE(says(
         "[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n[[event]]\nkind=\"puncture\"\ntime=0.1\ncenter=[0,0,1]\n" + moving,
-        "\"puncture\" is"));
+        "\"puncture\" is for solver melp"));
     EXPECT_TRUE(says(flying + "[[solid]]\ncenter=[0,0,1]\nradius=0.3\n" + moving, "on bubbles with a velocity"));
     for (const char* wrong : {"period=1.0", "stride=[1,0,0]", "mass=1.0", "free=true\nend=1.0"})
         EXPECT_THROW(solver_of(film + "[[solid]]\nradius=0.1\n" + wrong), InputError) << wrong;

@@ -4,6 +4,7 @@
 
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
+#include "lamella/film/bursting.h"
 #include "lamella/film/noise.h"
 #include "lamella/film/surfactant.h"
 #include "lamella/linalg/dense.h"
@@ -60,10 +61,9 @@ void VortexParticleSolver::check_moving() const {
     };
     refuse(options_.transfer == Reach::kKernel, "transfer = \"kernel\" on films that move is");
     refuse(!films.tensions.empty(), "[[tension]] factors are");
-    for (const film::Event& event : films.events) {
+    film::refuse_punctures(films, "vortex_particle");
+    for (const film::Event& event : films.events)
         refuse(event.kind == film::Event::Kind::kInflate, "[[event]] of kind \"inflate\" is");
-        refuse(event.kind == film::Event::Kind::kPuncture, "[[event]] of kind \"puncture\" is");
-    }
     refuse(norm(options_.stream.velocity) > 0.0, "stream.velocity of films that move is");
     const auto flies = [](const Vec3& velocity) { return norm(velocity) > 0.0; };
     refuse(!bodies_.empty() && std::any_of(films.velocity.begin(), films.velocity.end(), flies),
