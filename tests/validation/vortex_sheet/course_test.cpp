@@ -50,7 +50,7 @@ TEST(Course, KeepsVolumesWithoutCorrection) {
         const auto solver = started(unit_problem(std::move(*mesh), mesh == &sphere ? 0.2 : 0.25), options);
         const Course course = run(*solver, 4.0);
         report("no projection", course);
-        EXPECT_LT(course.volume_error, 1e-3);
+        EXPECT_LT(course.volume_error, 1e-6);
     }
 }
 
