@@ -48,13 +48,16 @@ void move_bodies(std::span<const film::Solid> solids, double time, double ahead,
 }
 
 Cover cover_of(const Surface& s, std::span<const Body> bodies) {
+    // Of an edge: how far inside its surface a solid's hold begins, so that it acts as large as it is, by the added
+    // mass of a disk four edges in radius (0.82 of it with 0.35, 1.08 with 0).
+    constexpr double kInward = 0.11;
     Cover cover{std::vector<double>(s.triangles(), 0.0), std::vector<std::int32_t>(s.triangles(), -1)};
     for (std::size_t t = 0; t < s.triangles(); ++t) {
         const Vec3 x = s.point(t, kMiddle);
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             if (!bodies[b].in_film) continue;
-            const double share =
-                std::clamp((bodies[b].radius - norm(x - bodies[b].center)) / s.edge_length(t), 0.0, 1.0);
+            const double depth = (bodies[b].radius - norm(x - bodies[b].center)) / s.edge_length(t);
+            const double share = std::clamp(depth - kInward, 0.0, 1.0);
             if (share <= cover.share[t]) continue;
             cover.share[t] = share;
             cover.body[t] = static_cast<std::int32_t>(b);
