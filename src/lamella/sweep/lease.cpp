@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
@@ -30,9 +31,10 @@ constexpr int kMostDeaths = 10;       // of processes that held the same lease
 struct Holder {
     std::string host;
     long process = 0;
-    int attempt = 0;  ///< how many held it before and died
+    int attempt = 0;      ///< how many held it before and died
+    unsigned serial = 0;  ///< of this process
 
-    std::string text() const { return fmt::format("{} {} {}\n", host, process, attempt); }
+    std::string text() const { return fmt::format("{} {} {} {}\n", host, process, attempt, serial); }
 };
 
 std::string host_name() {
@@ -92,16 +94,21 @@ bool create(const fs::path& file, const std::string& text) {
     throw IoError(fmt::format("{}: {}", file.string(), std::strerror(error)));
 }
 
-/// Takes a stale lease away; of several that try, one succeeds.
-bool remove_stale(const fs::path& file, const std::string& text) {
-    const fs::path aside = fmt::format("{}.{}.{}", file.string(), host_name(), ::getpid());
-    if (::rename(file.c_str(), aside.c_str()) != 0) return false;
-    const bool same = contents(aside) == text;
-    if (!same && ::link(aside.c_str(), file.c_str()) != 0) {
-        // Somebody else had renewed it, and a third took the place: it is the third's now.
+/// Puts one's own lease in the place of a stale one. It is written beside it first, under a name that only one can
+/// have, and then moved over it: at no time there is none. @returns whether it is one's own now
+bool take_over(const fs::path& file, const std::string& left, const std::string& own) {
+    const fs::path next = file.string() + ".next";
+    if (!create(next, own)) {
+        if (age(next).value_or(0.0) >= kStaleAfter)
+            ::unlink(next.c_str());  // whoever wrote it died before it was moved
+        return false;
     }
-    ::unlink(aside.c_str());
-    return same;
+    if (contents(file) != left || lease_state(file) != LeaseState::kStale) {
+        ::unlink(next.c_str());
+        return false;
+    }
+    ::rename(next.c_str(), file.c_str());
+    return contents(file) == own;
 }
 
 void beat(const std::stop_token& stop, const fs::path& file, const std::string& holder) {
@@ -123,15 +130,17 @@ LeaseState lease_state(const fs::path& file) {
 }
 
 std::optional<Lease> Lease::take(const fs::path& file) {
-    Holder self{host_name(), ::getpid(), 0};
+    static std::atomic<unsigned> serial{0};
+    Holder self{host_name(), ::getpid(), 0, ++serial};
     const LeaseState state = lease_state(file);
     if (state == LeaseState::kHeld || state == LeaseState::kWornOut) return std::nullopt;
     if (state == LeaseState::kStale) {
         const std::string left = contents(file);
         self.attempt = holder_of(left).attempt + 1;
-        if (!remove_stale(file, left)) return std::nullopt;
+        if (!take_over(file, left, self.text())) return std::nullopt;
+    } else if (!create(file, self.text())) {
+        return std::nullopt;
     }
-    if (!create(file, self.text())) return std::nullopt;
     return Lease(file, self.text());
 }
 

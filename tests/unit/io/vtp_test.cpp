@@ -170,7 +170,7 @@ TEST(Vtp, SaysWhatIsWrongWithAFile) {
                    "instead of");
     expect_refused("Name=\"region_pressure\"", "Name=\"regio_pressure\"", "is none of lamella's");
     expect_refused("NumberOfTuples=\"2\" format=\"appended\"", "NumberOfTuples=\"1\" format=\"appended\"",
-                   "instead of");
+                   "does not fit to the other solids");
     expect_refused("Name=\"solid_center\"", "Name=\"solid_radius\"", "does not fit to the other solids");
     expect_refused("Name=\"solid_radius\"", "Name=\"solid_radii\"", "is none of lamella's");
     expect_refused("_", "-", "f.vtp");

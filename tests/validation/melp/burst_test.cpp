@@ -25,6 +25,8 @@ double hole_radius(const MelpSolver& solver) {
 TEST(Burst, HoleInADiskGrowsWithTheSpeedOfTaylorAndCulick) {
     auto solver = solver_of(R"(
 [material]
+liquid_density = 1000.0
+surfactant = 1e-7
 surface_tension = 0.03
 thickness = 5e-7
 [[film]]
@@ -35,8 +37,6 @@ kind = "puncture"
 radius = 0.005
 [resolution]
 edge_length = 0.002
-[melp]
-liquid_density = 1000.0
 )");
     solver->start({});
     double n = 0.0, t1 = 0.0, t2 = 0.0, r1 = 0.0, tr = 0.0;

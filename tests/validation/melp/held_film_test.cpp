@@ -12,9 +12,10 @@ std::unique_ptr<MelpSolver> film(const std::string& film,
                                  double edge_length,
                                  const std::string& options,
                                  const std::string& material = "") {
-    auto solver = solver_of("[material]\nsurface_tension = 0.025\nthickness = 5e-7\n" + material + "\n[[film]]\n" +
-                            film + "\n[resolution]\nedge_length = " + std::to_string(edge_length) +
-                            "\n[melp]\nliquid_density = 1000.0\n" + options);
+    auto solver = solver_of(
+        "[material]\nliquid_density = 1000.0\nsurfactant = 1e-7\nsurface_tension = 0.025\nthickness = 5e-7\n" +
+        material + "\n[[film]]\n" + film + "\n[resolution]\nedge_length = " + std::to_string(edge_length) +
+        "\n[melp]\n" + options);
     solver->start({});
     return solver;
 }

@@ -326,7 +326,7 @@ void VortexParticleSolver::recover_velocity(MeshFlow& flow) const {
 /// that is added sums to zero: what a solid sheds it keeps the opposite of. [method sheet 6.3]
 void VortexParticleSolver::obey_solids(double dt, MeshFlow& flow) {
     if (bodies_.empty()) return;
-    constexpr int kSweeps = 12;
+    constexpr int kSweeps = 24;
     constexpr double kObeyed = 0.01;  // of what moves fastest
     move_bodies(input_.films->solids, time_ + dt, dt, bodies_);
     double speed = std::max(vortex_particle::fastest(input_.films->solids), norm(stream_.velocity()));
