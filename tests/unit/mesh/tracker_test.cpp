@@ -1,14 +1,16 @@
 #include "lamella/mesh/tracker.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <numbers>
-
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
+#include "lamella/mesh/edge_faces.h"
 #include "lamella/mesh/shapes/power_cluster.h"
+#include "lamella/mesh/shapes/standard_clusters.h"
+
+#include <gtest/gtest.h>
+
 #include "popping.h"
+#include <algorithm>
+#include <numbers>
 
 namespace lamella::mesh {
 namespace {
@@ -48,6 +50,56 @@ TEST(Tracker, LeavesACatenoidThatCanStandStanding) {
     for (int step = 0; step < 400; ++step) flow.advance();
     EXPECT_NEAR(total_area(flow.tracker.mesh()) / 5.991797, 1.0, 0.004);  // the 48-gon lacks 0.28 % of the ring
     EXPECT_TRUE(flow.tracker.take_events().empty());
+}
+
+/// The widest angle opposite to an edge of a triple line [degrees], and where.
+struct WideCorner {
+    double angle = 0.0, edge_length = 0.0;
+    FaceId face;
+    std::size_t corner = 0;
+};
+WideCorner widest_at_triple_lines(const FoamMesh& mesh) {
+    WideCorner widest;
+    const EdgeFaces edges = edge_faces(mesh);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges.of(e).size() != 3) continue;
+        for (const EdgeUse& use : edges.of(e)) {
+            const auto& v = mesh.faces[use.face].vertices;
+            const Vec3 at = mesh.position[v[use.opposite]];
+            const Vec3 a = mesh.position[v[(use.opposite + 1) % 3]] - at,
+                       b = mesh.position[v[(use.opposite + 2) % 3]] - at;
+            const double angle = std::atan2(norm(cross(a, b)), dot(a, b)) * 180.0 / std::numbers::pi;
+            if (angle > widest.angle) widest = {angle, norm(a - b), use.face, use.opposite};
+        }
+    }
+    return widest;
+}
+
+TEST(Tracker, SplitsATripleLineBelowTheCornerThatLiesOnIt) {
+    // A corner of the film between two bubbles is put onto the triple line, where no flip can help: the line is split
+    // below it, and the corner joins the line.
+    FoamMesh mesh = double_bubble(double_bubble_of_radii(1.0, 1.0), 0.3);
+    const EdgeFaces edges = edge_faces(mesh);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const auto between = [&](const EdgeUse& use) {
+            return mesh.faces[use.face].back != kOutside && mesh.faces[use.face].front != kOutside;
+        };
+        const auto uses = edges.of(e);
+        const auto film = std::find_if(uses.begin(), uses.end(), between);
+        if (uses.size() != 3 || film == uses.end()) continue;
+        const Vec3 middle = 0.5 * (mesh.position[edges.edge[e].a] + mesh.position[edges.edge[e].b]);
+        Vec3& corner = mesh.position[mesh.faces[film->face].vertices[film->opposite]];
+        corner = middle + 0.01 * (corner - middle);
+        break;
+    }
+    const WideCorner before = widest_at_triple_lines(mesh);
+    ASSERT_GT(before.angle, 175.0);
+    const TrackerOptions options{.edge_length = before.edge_length / 0.7, .merging = false, .separating = false};
+    Tracker tracker(mesh, options);
+    const RemeshReport report = tracker.remesh();
+    EXPECT_GE(report.splits, 1);
+    EXPECT_LT(widest_at_triple_lines(tracker.mesh()).angle, 150.0);
+    EXPECT_EQ(faults(tracker.mesh()), std::vector<std::string>{});
 }
 
 TEST(Tracker, TakesTheSameStepsOnAnyNumberOfThreads) {
