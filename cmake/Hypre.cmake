@@ -1,5 +1,5 @@
 # LAMELLA_HYPRE: AUTO takes hypre's algebraic multigrid for large stiff equations where it is found, ON insists on it, OFF
-# leaves it out. Sets LAMELLA_HAS_HYPRE and the target lamella_hypre. hypre needs MPI, of which one process is enough.
+# leaves it out. Sets LAMELLA_HAS_HYPRE. hypre needs MPI, of which one process is enough.
 set(LAMELLA_HYPRE AUTO CACHE STRING "Multigrid of hypre for large film runs: AUTO, ON or OFF")
 set_property(CACHE LAMELLA_HYPRE PROPERTY STRINGS AUTO ON OFF)
 set(LAMELLA_HAS_HYPRE OFF)
@@ -17,7 +17,4 @@ if(NOT (MPI_C_FOUND AND LAMELLA_HYPRE_INCLUDE AND LAMELLA_HYPRE_LIBRARY))
 endif()
 file(STRINGS ${LAMELLA_HYPRE_INCLUDE}/HYPRE_config.h version REGEX "HYPRE_RELEASE_VERSION")
 string(REGEX MATCH "[0-9.]+" LAMELLA_HYPRE_VERSION "${version}")
-add_library(lamella_hypre INTERFACE IMPORTED)
-target_include_directories(lamella_hypre SYSTEM INTERFACE ${LAMELLA_HYPRE_INCLUDE})
-target_link_libraries(lamella_hypre INTERFACE ${LAMELLA_HYPRE_LIBRARY} MPI::MPI_C)
 set(LAMELLA_HAS_HYPRE ON)
