@@ -56,7 +56,7 @@ public:
         return *this;
     }
 
-    /// The same sum with the low integer in [0, 2^31): parts that were carried add up whatever the number of their terms.
+    /// The same sum with the low integer in [0, 2^31): parts that were carried add up however many terms they have.
     LAMELLA_HOST_DEVICE void carry() {
         const std::int64_t whole = low_ >> 31;
         high_ += whole;

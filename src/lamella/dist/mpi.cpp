@@ -7,10 +7,10 @@
 #include "lamella/dist/detail/launcher.h"
 #include "lamella/dist/world.h"
 
+#include <fmt/format.h>
 #include <mpi.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -99,9 +99,14 @@ private:
 }  // namespace
 
 std::shared_ptr<Communicator> join_world() {
-    // Without a launcher MPI would only cost time.
-    if (!detail::launch().launched) return std::make_shared<Alone>();
-    return std::make_shared<Mpi>();
+    const detail::Launch launch = detail::launch();
+    std::shared_ptr<Communicator> processes = std::make_shared<Alone>();
+    if (launch.launched) processes = std::make_shared<Mpi>();  // without a launcher MPI would only cost time
+    if (launch.processes > 1 && !processes->several())
+        throw InputError(fmt::format("{} processes were started that MPI does not know of each other: under Slurm use "
+                                     "srun --mpi=pmix, else the mpirun of the MPI that lamella was built with",
+                                     launch.processes));
+    return processes;
 }
 
 }  // namespace lamella::dist

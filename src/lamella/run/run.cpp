@@ -29,7 +29,10 @@ Device device_of(const RunSettings& settings) {
 /// Whether this process only follows another.
 bool follows(const RunSettings& settings) { return settings.processes && settings.processes->rank() > 0; }
 
-Resumption read_last_checkpoint(const RunFolder& folder, const scene::Scene& scene, Team& team, const MakeSolver& make) {
+Resumption read_last_checkpoint(const RunFolder& folder,
+                                const scene::Scene& scene,
+                                Team& team,
+                                const MakeSolver& make) {
     std::string damage;
     for (const std::filesystem::path& file : {folder.checkpoint(), folder.previous_checkpoint()}) {
         if (!std::filesystem::exists(file)) continue;
@@ -96,9 +99,10 @@ RunResult resume_run(const std::filesystem::path& path,
     const RunFolder folder = RunFolder::open(path);
     const scene::Scene scene = scene::load_scene(folder.scene(), {}, registry);
     const Schedule schedule(scene.time, settings.until);
-    Resumption from = read_last_checkpoint(folder, scene, team, [&](const std::shared_ptr<dist::Communicator>& processes) {
+    const MakeSolver make = [&](const std::shared_ptr<dist::Communicator>& processes) {
         return scene::create_solver(scene, registry, device_of(settings), processes);
-    });
+    };
+    Resumption from = read_last_checkpoint(folder, scene, team, make);
 
     if (settings.until && is_after(from.solver->time(), *settings.until))
         throw InputError(fmt::format("{} is at time {:.6g} already, beyond {:.6g}", path.string(), from.solver->time(),

@@ -45,14 +45,14 @@ struct NeighborSearch {
 
 /// Balls of other processes among those searched.
 struct Copies {
-    std::size_t count = 0;        ///< the last so many balls are copies: they get no lists, but stand in those of others
+    std::size_t count = 0;  ///< the last so many balls are copies: they get no lists, but stand in those of others
     double largest_radius = 0.0;  ///< over all processes; where there is but one, it need not be given
 };
 
 /// Finds every pair (and image) nearer than R_i + R_j + skin.
 ///
-/// In the lists the copies are balls padded(n), padded(n) + 1, ... with n the number of other balls, in the order given.
-/// Balls that have copies in their lists come last in `order`.
+/// In the lists the copies are balls padded(n), padded(n) + 1, ... with n the number of other balls, in the order
+/// given. Balls that have copies in their lists come last in `order`.
 ///
 /// @param position  D columns, `radius`, `id`: at least `count` entries each; ids are distinct
 /// Costs about (reach / cell)^D candidates per ball with reach = R_i + R_max + skin.

@@ -1,143 +1,97 @@
-// One foam on several processes has the bits of the foam on one. Processes are threads here, and MPI's in app.clusters.
+// One foam on several processes has the bits of the foam on one, in short; processes_full_test.cpp has it at length.
 
-#include "lamella/core/parallel.h"
-#include "lamella/dist/gather.h"
-
-#include <gtest/gtest.h>
-
-#include "../dist/thread_team.h"
-#include "foams.h"
+#include "processes.h"
 
 namespace lamella::bubble {
 namespace {
 
 using namespace test;
-using lamella::test::as_processes;
-using Processes = std::shared_ptr<dist::Communicator>;
 
-/// Gathers what the processes save, and shares out what they load.
-class SharedMemory : public sim::StateWriter, public sim::StateReader {
-public:
-    SharedMemory(dist::Communicator& processes, Memory& memory) : processes_(processes), memory_(memory) {}
-
-    void write(std::string_view name, std::span<const double> v) override { put(name, v); }
-    void write(std::string_view name, std::span<const std::int64_t> v) override { put(name, v); }
-    void write(std::string_view name, std::span<const std::int32_t> v) override { put(name, v); }
-    void write_part(std::string_view name, std::span<const double> v, sim::Part p) override { put_part(name, v, p); }
-    void write_part(std::string_view name, std::span<const std::int64_t> v, sim::Part p) override {
-        put_part(name, v, p);
-    }
-    void write_part(std::string_view name, std::span<const std::int32_t> v, sim::Part p) override {
-        put_part(name, v, p);
-    }
-    void read(std::string_view name, std::size_t n, std::vector<double>& v) override { memory_.read(name, n, v); }
-    void read(std::string_view name, std::size_t n, std::vector<std::int64_t>& v) override { memory_.read(name, n, v); }
-    void read(std::string_view name, std::size_t n, std::vector<std::int32_t>& v) override { memory_.read(name, n, v); }
-    void read_part(std::string_view name, std::size_t n, std::vector<double>& v) override { take(name, n, v); }
-    void read_part(std::string_view name, std::size_t n, std::vector<std::int64_t>& v) override { take(name, n, v); }
-    void read_part(std::string_view name, std::size_t n, std::vector<std::int32_t>& v) override { take(name, n, v); }
-
-private:
-    template <class T>
-    void put(std::string_view name, std::span<const T> v) {
-        if (processes_.rank() == 0) memory_.write(name, v);
-    }
-    template <class T>
-    void put_part(std::string_view name, std::span<const T> v, sim::Part part) {
-        const std::vector<T> all = dist::gather(processes_, v);
-        if (processes_.rank() != 0) return;
-        EXPECT_EQ(static_cast<std::int64_t>(all.size()), part.total);
-        memory_.write(name, std::span<const T>(all));
-    }
-    template <class T>
-    void take(std::string_view name, std::size_t n, std::vector<T>& v) {
-        memory_.read(name, n, v);
-        const dist::Share share = dist::share_of(static_cast<std::int64_t>(n), processes_);
-        v.erase(v.begin() + share.first + share.count, v.end());
-        v.erase(v.begin(), v.begin() + share.first);
-    }
-
-    dist::Communicator& processes_;
-    Memory& memory_;
-};
-
-template <int D>
-std::unique_ptr<BubbleSolver<D>> make_share(const Options& options, const Processes& processes) {
-    sim::SolverInput input;
-    input.seed = 4;
-    input.processes = processes;
-    return std::make_unique<BubbleSolver<D>>(options, input);
+/// Bubbles vanish from the first steps on.
+Options quick(int dimension) {
+    Options o = coarsening(dimension, 200, dimension == 2 ? 0.92 : 0.75);
+    o.gas.exchange_rate = 0.2;
+    o.start.max_iterations = 20;
+    return o;
 }
 
-struct Outcome {
-    Memory state;
-    std::vector<sim::Event> events;
-    std::map<std::string, double> scalars;
-    std::vector<double> frame;  ///< positions, radii and all fields
-};
-
-template <int D>
-void look(const BubbleSolver<D>& solver, dist::Communicator& processes, Outcome& outcome) {
-    SharedMemory memory(processes, outcome.state);
-    solver.save(memory);
-    const std::vector<sim::Scalar> scalars = solver.scalars();
-    const sim::Frame frame = solver.frame();
-    std::vector<double> values;
-    const auto append = [&](std::span<const double> part) {
-        const auto all = dist::gather(processes, part);
-        values.insert(values.end(), all.begin(), all.end());
-    };
-    append(frame.points.radius);
-    for (const sim::Field& field : frame.points.fields) append(field.values);
-    if (processes.rank() != 0) return;
-    outcome.frame = values;
-    for (const sim::Scalar& s : scalars) outcome.scalars[s.name] = s.value;
-}
-
-/// A foam after `steps` steps on several processes.
-template <int D>
-Outcome run_shared(const Options& options, int steps, int processes) {
-    Outcome outcome;
-    as_processes(processes, [&](const Processes& all) {
-        auto solver = make_share<D>(options, all);
-        solver->start({});
-        for (int step = 0; step < steps && !solver->stop_reason(); ++step) solver->advance(1e9);
-        look(*solver, *all, outcome);
-        auto events = solver->take_events();
-        if (all->rank() == 0) outcome.events = std::move(events);
-    });
-    return outcome;
-}
-
-template <int D>
-void expect_same_on_any_number(const Options& options, int steps) {
-    ThreadLimit one(1);
-    const Outcome alone = run_shared<D>(options, steps, 1);
-    EXPECT_FALSE(alone.events.empty());
-    EXPECT_EQ(static_cast<double>(alone.scalars.at("steps")), steps);
-    EXPECT_LT(std::abs(alone.scalars.at("volume_error")), 1e-14);
-    for (const int processes : {2, 3, 4, 8}) {
-        const Outcome shared = run_shared<D>(options, steps, processes);
-        EXPECT_EQ(shared.state, alone.state) << processes << " processes";
-        EXPECT_EQ(shared.scalars, alone.scalars);
-        EXPECT_EQ(shared.frame, alone.frame);
-        ASSERT_EQ(shared.events.size(), alone.events.size());
-        for (std::size_t k = 0; k < alone.events.size(); ++k) {
-            EXPECT_EQ(shared.events[k].detail, alone.events[k].detail);
-            EXPECT_EQ(shared.events[k].position, alone.events[k].position);
-        }
-        const auto& ids = std::get<std::vector<std::int64_t>>(shared.state.entries.at("foam/id"));
-        const auto& start = std::get<std::vector<std::int64_t>>(shared.state.entries.at("start_count"));
-        EXPECT_EQ(static_cast<std::int64_t>(ids.size() + shared.events.size()), start[0]) << "live and dead are all";
-    }
-}
-
-TEST(Processes, GiveTheSameBitsIn2D) { expect_same_on_any_number<2>(coarsening(2, 900, 0.92), 500); }
+TEST(Processes, GiveTheSameBitsIn2D) { expect_same_on<2>({2, 3}, quick(2), 40); }
 
 TEST(Processes, GiveTheSameBitsIn3D) {
-    Options o = coarsening(3, 900, 0.75);
-    o.gas.exchange_rate = 5e-3;
-    expect_same_on_any_number<3>(o, 500);
+    Options o = quick(3);
+    o.walls = {false, true, false};
+    o.drag = Drag::kPairwise;
+    o.gas.exchange_rate = 1.0;
+    expect_same_on<3>({4}, o, 40);
+}
+
+TEST(Processes, ContinueEachOthersStates) {
+    ThreadLimit one(1);
+    Options o = quick(2);
+    o.integrator.method = Method::kAbm2;
+    Outcome half;
+    Outcome whole;
+    as_processes(2, [&](const Processes& all) {
+        auto solver = make_share<2>(o, all);
+        solver->start({});
+        for (int step = 0; step < 20; ++step) solver->advance(1e9);
+        look(*solver, *all, half);
+        for (int step = 0; step < 20; ++step) solver->advance(1e9);
+        look(*solver, *all, whole);
+    });
+    for (const int processes : {1, 3}) {
+        Outcome resumed;
+        as_processes(processes, [&](const Processes& all) {
+            auto solver = make_share<2>(o, all);
+            SharedMemory memory(*all, half.state);
+            solver->load(memory);
+            for (int step = 0; step < 20; ++step) solver->advance(1e9);
+            look(*solver, *all, resumed);
+        });
+        EXPECT_EQ(resumed.state, whole.state) << processes << " processes";
+    }
+}
+
+TEST(Processes, RefuseAStateTogether) {
+    Outcome half;
+    as_processes(2, [&](const Processes& all) {
+        auto solver = make_share<2>(quick(2), all);
+        solver->start({});
+        look(*solver, *all, half);
+    });
+    std::get<std::vector<double>>(half.state.entries["foam/position_x"])[7] = std::nan("");
+    as_processes(3, [&](const Processes& all) {
+        auto solver = make_share<2>(quick(2), all);
+        SharedMemory memory(*all, half.state);
+        EXPECT_THROW(solver->load(memory), InputError);
+    });
+}
+
+TEST(Processes, CarryIdsBeyond32Bits) {
+    ThreadLimit one(1);
+    const Options o = quick(2);
+    Outcome start;
+    as_processes(1, [&](const Processes& all) {
+        auto solver = make_share<2>(o, all);
+        solver->start({});
+        look(*solver, *all, start);
+    });
+    constexpr std::int64_t kFar = std::int64_t{1} << 40;
+    auto& ids = std::get<std::vector<std::int64_t>>(start.state.entries["foam/id"]);
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        ids[i] = kFar / static_cast<std::int64_t>(ids.size()) * static_cast<std::int64_t>(i);
+    start.state.entries["start_count"] = std::vector<std::int64_t>{kFar};
+    std::vector<Outcome> after(2);
+    for (const int processes : {1, 3})
+        as_processes(processes, [&](const Processes& all) {
+            auto solver = make_share<2>(o, all);
+            SharedMemory memory(*all, start.state);
+            solver->load(memory);
+            for (int step = 0; step < 20; ++step) solver->advance(1e9);
+            look(*solver, *all, after[processes == 1 ? 0 : 1]);
+        });
+    EXPECT_EQ(after[0].state, after[1].state);
+    EXPECT_GT(std::get<std::vector<std::int64_t>>(after[0].state.entries["foam/id"]).back(), kFar / 2);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "thread_team.h"
+#include "process_team.h"
 
 namespace lamella::dist {
 namespace {

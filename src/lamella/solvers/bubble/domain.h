@@ -31,6 +31,7 @@ public:
     void sum(std::span<FixedSum> sums) const { dist::sum(*processes_, sums); }
     std::int64_t sum(std::int64_t value) const { return dist::sum(*processes_, value); }
     double largest(double value) const { return dist::largest(*processes_, value); }
+    void largest(std::span<double> values) const { processes_->largest(values); }
     /// As lamella::exact_sum, over the items of all processes.
     template <class Term>
     double exact_sum(std::size_t count, Term&& term) const {

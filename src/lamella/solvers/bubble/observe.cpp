@@ -9,6 +9,7 @@
 #include "lamella/core/parallel.h"
 #include "lamella/solvers/bubble/bubble_solver.h"
 #include "lamella/solvers/bubble/census.h"
+#include "lamella/solvers/bubble/process_plan.h"
 
 namespace lamella::bubble {
 namespace {
@@ -140,9 +141,12 @@ std::vector<sim::Scalar> BubbleSolver<D>::characteristic_numbers() const {
         list.push_back({"relaxation_per_coarsening", "-", relaxation * m.scaled_time_rate(),
                         "keep well below 1: the foam must relax faster than it coarsens"});
     }
-    const double per_bubble = D == 2 ? 260.0 : 360.0;
-    const double lists = D == 2 ? 30.0 : 60.0;
-    list.push_back({"memory", "MB", count * (per_bubble + lists) * 1e-6, "state and neighbor lists"});
+    const ProcessPlan plan = plan_processes<D>(options_);
+    list.push_back({"memory", "MB", count * plan.bytes_per_bubble * 1e-6, "state and neighbor lists"});
+    list.push_back({"processes", "-", plan.processes,
+                    "as many as work at 80 % of one process's speed each, by a model (docs/clusters.md)"});
+    list.push_back({"memory_per_process", "MB", plan.memory * 1e-6, "of that many, copies of others' bubbles included"});
+    list.push_back({"halo_share", "-", plan.halo_share, "copies of others' bubbles per bubble of a process, at the start"});
     return list;
 }
 

@@ -122,7 +122,9 @@ private:
                 return most;
             },
             largest);
-        const Products scale{0.0, domain.largest(most_here.forces), domain.largest(most_here.velocities)};
+        double most_anywhere[] = {most_here.forces, most_here.velocities};
+        domain.largest(most_anywhere);
+        const Products scale{0.0, most_anywhere[0], most_anywhere[1]};
         struct Sums {
             FixedSum power, forces, velocities;
         };

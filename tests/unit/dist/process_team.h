@@ -1,23 +1,24 @@
 #pragma once
 
-// Processes of one run as threads of one process: what MPI does, for tests without it.
+// Processes of one run as fibers of one thread: what MPI does, for tests without it. Fibers and not threads, because
+// processes that share few cores with other work wait for each other thousands of times.
 
 #include "lamella/dist/communicator.h"
 
+#include <ucontext.h>
+
 #include <algorithm>
-#include <barrier>
-#include <cstring>
+#include <cstdint>
 #include <exception>
 #include <memory>
-#include <thread>
+#include <vector>
 
 namespace lamella::test {
 
-class ThreadTeam {
+class ProcessTeam {
 public:
-    explicit ThreadTeam(int size)
+    explicit ProcessTeam(int size)
         : size_(size),
-          barrier_(size),
           outgoing_(static_cast<std::size_t>(size)),
           integers_(outgoing_.size()),
           reals_(outgoing_.size()) {}
@@ -29,7 +30,7 @@ public:
         }
 
     public:
-        Member(ThreadTeam& team, int rank) : team_(team), rank_(rank) {}
+        Member(ProcessTeam& team, int rank) : team_(team), rank_(rank) {}
         int rank() const override { return rank_; }
         int size() const override { return team_.size_; }
 
@@ -85,16 +86,67 @@ public:
         void abort(int) override { std::terminate(); }
 
     private:
-        void meet() { team_.barrier_.arrive_and_wait(); }
+        void meet() { team_.meet(); }
 
-        ThreadTeam& team_;
+        ProcessTeam& team_;
         int rank_;
         std::vector<dist::Incoming> incoming_;
     };
 
+    /// Calls work(communicator) as each process, all of which must meet equally often.
+    template <class Work>
+    void run(Work&& work) {
+        constexpr std::size_t kStack = std::size_t{4} << 20;
+        struct Fiber {
+            ProcessTeam& team;
+            Work& work;
+            int rank;
+            ucontext_t context{};
+            std::unique_ptr<char[]> stack = std::make_unique<char[]>(kStack);
+            std::exception_ptr error = nullptr;
+            bool done = false;
+
+            static void enter(unsigned low, unsigned high) {
+                auto* fiber = reinterpret_cast<Fiber*>((static_cast<std::uintptr_t>(high) << 32) | low);
+                try {
+                    fiber->work(
+                        std::shared_ptr<dist::Communicator>(std::make_shared<Member>(fiber->team, fiber->rank)));
+                } catch (...) {
+                    fiber->error = std::current_exception();
+                }
+                fiber->done = true;
+                swapcontext(&fiber->context, &fiber->team.scheduler_);
+            }
+        };
+        std::vector<std::unique_ptr<Fiber>> fibers;
+        for (int rank = 0; rank < size_; ++rank) {
+            Fiber& fiber = *fibers.emplace_back(new Fiber{*this, work, rank});
+            getcontext(&fiber.context);
+            fiber.context.uc_stack.ss_sp = fiber.stack.get();
+            fiber.context.uc_stack.ss_size = kStack;
+            const auto address = reinterpret_cast<std::uintptr_t>(&fiber);
+            makecontext(&fiber.context, reinterpret_cast<void (*)()>(&Fiber::enter), 2,
+                        static_cast<unsigned>(address & 0xffffffffU), static_cast<unsigned>(address >> 32));
+        }
+        // Each runs until it meets the others, then the next one does.
+        for (bool any = true; any;) {
+            any = false;
+            for (auto& fiber : fibers) {
+                if (fiber->done) continue;
+                any = true;
+                current_ = &fiber->context;
+                swapcontext(&scheduler_, &fiber->context);
+            }
+        }
+        if (fibers[0]->error) std::rethrow_exception(fibers[0]->error);
+    }
+
 private:
+    void meet() { swapcontext(current_, &scheduler_); }
+
     int size_;
-    std::barrier<> barrier_;
+    ucontext_t scheduler_{};
+    ucontext_t* current_ = nullptr;
     std::vector<std::vector<dist::Outgoing>> outgoing_;
     std::vector<std::vector<std::int64_t>> integers_;
     std::vector<std::vector<double>> reals_;
@@ -104,20 +156,7 @@ private:
 /// Calls work(communicator) as each of `size` processes. An error of process 0 reaches the caller.
 template <class Work>
 void as_processes(int size, Work&& work) {
-    ThreadTeam team(size);
-    std::exception_ptr error;
-    std::vector<std::thread> threads;
-    for (int rank = 0; rank < size; ++rank)
-        threads.emplace_back([&, rank] {
-            const auto member = std::make_shared<ThreadTeam::Member>(team, rank);
-            try {
-                work(std::shared_ptr<dist::Communicator>(member));
-            } catch (...) {
-                if (rank == 0) error = std::current_exception();
-            }
-        });
-    for (std::thread& thread : threads) thread.join();
-    if (error) std::rethrow_exception(error);
+    ProcessTeam(size).run(work);
 }
 
 }  // namespace lamella::test
