@@ -2,6 +2,8 @@
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/core/progress.h"
+#include "lamella/dist/agree.h"
+#include "lamella/dist/world.h"
 #include "lamella/run/run.h"
 #include "lamella/scene/scene.h"
 #include "lamella/scene/shipped.h"
@@ -83,7 +85,10 @@ std::vector<std::string> compat_deviations(const scene::Scene& scene, const sim:
     return lines;
 }
 
-void print_header(const scene::Scene& scene, const sim::SolverRegistry& registry, const std::string& folder) {
+void print_header(const scene::Scene& scene,
+                  const sim::SolverRegistry& registry,
+                  const std::string& folder,
+                  int processes) {
     const BuildInfo build = build_info();
     const sim::SolverEntry& entry = *registry.find(scene.solver);
     std::string solver = entry.name;
@@ -96,6 +101,7 @@ void print_header(const scene::Scene& scene, const sim::SolverRegistry& registry
         {"solver", solver},
         {"threads", std::to_string(thread_count())},
         {"folder", folder}};
+    if (processes > 1) rows.insert(rows.begin() + 2, {"processes", std::to_string(processes)});
     for (const std::string& deviation : compat_deviations(scene, entry)) rows.emplace_back("compat", deviation);
     fmt::print(stderr, "lamella {} ({})\n{}", build.version, build.commit, two_columns(rows));
 }
@@ -121,16 +127,42 @@ void print_summary(const run::RunResult& result, const std::string& folder, doub
                folder, result.frames);
 }
 
-/// Runs `work` with threads, signals and progress set up; returns the exit code.
+using Processes = std::shared_ptr<dist::Communicator>;
+
+/// Does `work` with the processes that a launcher started and their threads. Only process 0 speaks: the others have no
+/// errors that it has not.
 template <class Work>
-int supervise(const RunOptions& options, const std::string& folder, const sim::SolverRegistry& registry, Work&& work) {
+int with_processes(const RunOptions& options, Work&& work) {
+    const Processes processes = dist::join_world();
+    const bool chosen = options.threads > 0 || !processes->several();
+    const ThreadLimit threads(chosen ? options.threads : dist::threads_per_process());
+    try {
+        return work(processes);
+    } catch (const std::exception&) {
+        if (processes->rank() == 0) throw;
+        return kDone;  // a launcher then reports the exit code of process 0
+    }
+}
+
+/// Runs `work` with signals and progress set up; returns the exit code.
+template <class Work>
+int supervise(const RunOptions& options,
+              const std::string& folder,
+              const sim::SolverRegistry& registry,
+              const Processes& processes,
+              Work&& work) {
     catch_stop_signals();
+    if (processes->rank() > 0) {
+        work({.until = options.until, .device = options.device, .processes = processes});
+        return kDone;
+    }
     ProgressDisplay display(progress_style(options.progress));
     run::RunSettings settings;
     settings.until = options.until;
     settings.existing = options.overwrite ? run::Existing::kOverwrite : run::Existing::kRefuse;
     settings.device = options.device;
-    settings.on_begin = [&](const scene::Scene& scene) { print_header(scene, registry, folder); };
+    settings.processes = processes;
+    settings.on_begin = [&](const scene::Scene& scene) { print_header(scene, registry, folder, processes->size()); };
     settings.stop_signal = stop_signal;
     settings.on_progress = [&](const run::RunProgress& progress) { display.show(progress); };
     settings.log = [&](LogLevel level, std::string_view message) {
@@ -148,23 +180,28 @@ int supervise(const RunOptions& options, const std::string& folder, const sim::S
 }
 
 int run_scene_command(const RunOptions& options) {
-    check_device(options.device);
-    const ThreadLimit threads(options.threads);
-    const sim::SolverRegistry registry = scene::all_solvers();
-    const std::filesystem::path file = scene::resolve_scene_path(options.scene);
-    const scene::Scene scene = scene::load_scene(file, options.overrides, registry);
-    const std::string folder = options.folder.empty() ? default_folder(file) : options.folder;
-    return supervise(options, folder, registry, [&](const run::RunSettings& settings) {
-        return run::run_scene(scene, registry, folder, settings);
+    return with_processes(options, [&](const Processes& processes) {
+        const sim::SolverRegistry registry = scene::all_solvers();
+        std::filesystem::path file;
+        const scene::Scene scene = dist::together(*processes, [&] {
+            check_device(options.device);
+            file = scene::resolve_scene_path(options.scene);
+            return scene::load_scene(file, options.overrides, registry);
+        });
+        const std::string folder = options.folder.empty() ? default_folder(file) : options.folder;
+        return supervise(options, folder, registry, processes, [&](const run::RunSettings& settings) {
+            return run::run_scene(scene, registry, folder, settings);
+        });
     });
 }
 
 int resume_command(const RunOptions& options) {
-    check_device(options.device);
-    const ThreadLimit threads(options.threads);
-    const sim::SolverRegistry registry = scene::all_solvers();
-    return supervise(options, options.folder, registry, [&](const run::RunSettings& settings) {
-        return run::resume_run(options.folder, registry, settings);
+    return with_processes(options, [&](const Processes& processes) {
+        dist::together(*processes, [&] { check_device(options.device); });
+        const sim::SolverRegistry registry = scene::all_solvers();
+        return supervise(options, options.folder, registry, processes, [&](const run::RunSettings& settings) {
+            return run::resume_run(options.folder, registry, settings);
+        });
     });
 }
 

@@ -14,17 +14,19 @@ from pathlib import Path
 SOLVERS = ["bubble", "equilibrium", "melp", "vortex_particle", "vortex_sheet"]
 
 # Folder -> the folders it may include, beside itself.
-BELOW_SOLVERS = ["core", "geometry", "linalg", "optics", "spatial", "mesh", "particles", "film", "sim"]
+BELOW_SOLVERS = ["core", "geometry", "linalg", "optics", "spatial", "dist", "mesh", "particles", "film",
+                 "sim"]
 FOLDERS = {
     "core": [],
     "geometry": ["core"],
     "linalg": ["core"],
     "optics": ["core"],
     "spatial": ["core", "geometry"],
+    "dist": ["core", "spatial"],
     "mesh": ["core", "geometry", "linalg", "spatial"],
     "particles": ["core", "geometry", "linalg", "spatial"],
     "film": ["core", "geometry", "linalg", "spatial", "mesh"],
-    "sim": ["core", "mesh", "film"],
+    "sim": ["core", "dist", "mesh", "film"],
     "io": ["core", "geometry", "sim", "mesh", "particles"],
     "measure": ["core", "geometry", "optics", "spatial", "mesh", "sim", "io"],
     "render": ["core", "geometry", "optics", "spatial", "mesh", "sim", "io"],
@@ -39,6 +41,7 @@ LIBRARIES = {
     r"tbb/|oneapi/tbb/": ["core"],
     r"Random123/": ["core"],
     r"cub/": ["core"],
+    r"mpi\.h": ["dist"],
     r"Eigen/|unsupported/Eigen/": ["linalg"],
     r"HYPRE": ["linalg"],
     r"mpi\.h": ["linalg"],
@@ -57,7 +60,7 @@ LIBRARIES = {
 }
 
 # Standard C++ headers have no dot, and but one a slash; the C and POSIX ones that the library may use are named.
-SYSTEM = re.compile(r"^(\w+|experimental/simd|(sys|sanitizer)/\w+\.h|(fcntl|unistd|dirent|signal|spawn|cuda_runtime|immintrin)\.h)$")
+SYSTEM = re.compile(r"^(\w+|experimental/simd|(sys|sanitizer)/\w+\.h|(fcntl|unistd|dirent|sched|signal|spawn|cuda_runtime|immintrin)\.h)$")
 
 # The library never prints, exits or aborts: the caller owns stdout, stderr and the process. (A failed assertion does.)
 PROCESS = re.compile(r"\bstd::(cout|cerr|clog|exit|abort|quick_exit|print|printf|puts)\b|\bfmt::print\b|\bspdlog::")

@@ -15,7 +15,7 @@ namespace lamella {
 /// Each term is split into a high and a low integer of two fixed scales, and integers are added exactly:
 ///     term = high * 2^-s + low * 2^-(s + 31) + (a rest below 2^-(s + 31), dropped)
 /// with s such that the sum of all |terms| <= `bound` stays below 2^60. The dropped rests are below
-/// 2^-91 * bound per term. Holds up to 2^31 terms.
+/// 2^-91 * bound per term. Holds up to 2^31 terms, and more where parts of that many are carried before they are added.
 class FixedSum {
 public:
     /// A sum of zeros.
@@ -56,8 +56,17 @@ public:
         return *this;
     }
 
+    /// The same sum with the low integer in [0, 2^31): parts that were carried add up however many terms they have.
+    LAMELLA_HOST_DEVICE void carry() {
+        const std::int64_t whole = low_ >> 31;
+        high_ += whole;
+        low_ -= whole * (std::int64_t{1} << 31);
+    }
+
     LAMELLA_HOST_DEVICE double value() const {
-        return static_cast<double>(high_) * high_unit_ + static_cast<double>(low_) * (high_unit_ / kLowScale);
+        FixedSum one = *this;  // the same sum can be split in many ways; its value must not depend on that
+        one.carry();
+        return static_cast<double>(one.high_) * high_unit_ + static_cast<double>(one.low_) * (high_unit_ / kLowScale);
     }
 
     /// The two integers, for sums over processes and GPU threads.

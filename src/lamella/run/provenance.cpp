@@ -64,6 +64,7 @@ struct Provenance::Impl {
     std::string solver;
     std::uint64_t seed = 0;
     std::string device;
+    int processes = 1;
     std::string started;
     ordered_json earlier_sessions;  ///< as an array
     std::vector<std::string> notes;
@@ -79,6 +80,7 @@ struct Provenance::Impl {
                   {"flags", build.flags},
                   {"libraries", build.libraries}}},
                 {"host", host_name()},
+                {"processes", processes},
                 {"threads", thread_count()},
                 {"device", device},
                 {"start", started},
@@ -112,12 +114,13 @@ void Provenance::Impl::take_over_sessions() {
     }
 }
 
-Provenance::Provenance(std::filesystem::path path, const scene::Scene& scene, std::string device)
+Provenance::Provenance(std::filesystem::path path, const scene::Scene& scene, std::string device, int processes)
     : impl_(new Impl{.path = std::move(path),
                      .title = scene.title,
                      .solver = scene.solver,
                      .seed = scene.seed,
                      .device = std::move(device),
+                     .processes = processes,
                      .started = now_text(),
                      .earlier_sessions = {},
                      .notes = scene.notes}) {
@@ -143,7 +146,7 @@ void Provenance::write(const RunRecord& record) {
     }
 
     ordered_json file{{"program", "lamella"}};
-    for (const char* key : {"version", "commit", "build", "host", "threads", "device"}) file[key] = last.at(key);
+    for (const char* key : {"version", "commit", "build", "host", "processes", "threads", "device"}) file[key] = last.at(key);
     file["title"] = impl_->title;
     file["solver"] = impl_->solver;
     file["seed"] = impl_->seed;

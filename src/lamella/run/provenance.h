@@ -63,7 +63,7 @@ struct RunRecord {
 class Provenance {
 public:
     /// Takes over the sessions of an existing file; one that cannot be understood is replaced, and `notes` says so.
-    Provenance(std::filesystem::path path, const scene::Scene& scene, std::string device);
+    Provenance(std::filesystem::path path, const scene::Scene& scene, std::string device, int processes);
     ~Provenance();
 
     /// Remarks of the scene reader and of taking over the old file.

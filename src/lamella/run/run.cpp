@@ -4,6 +4,7 @@
 #include "lamella/io/atomic_file.h"
 #include "lamella/io/mesh_files.h"
 #include "lamella/run/detail/loop.h"
+#include "lamella/run/detail/team.h"
 
 #include <fmt/format.h>
 
@@ -25,15 +26,18 @@ Device device_of(const RunSettings& settings) {
     return settings.device == "cuda" ? Device::kCuda : Device::kCpu;
 }
 
+/// Whether this process only follows another.
+bool follows(const RunSettings& settings) { return settings.processes && settings.processes->rank() > 0; }
+
 Resumption read_last_checkpoint(const RunFolder& folder,
                                 const scene::Scene& scene,
-                                const sim::SolverRegistry& registry,
-                                Device device) {
+                                Team& team,
+                                const MakeSolver& make) {
     std::string damage;
     for (const std::filesystem::path& file : {folder.checkpoint(), folder.previous_checkpoint()}) {
         if (!std::filesystem::exists(file)) continue;
         try {
-            auto solver = scene::create_solver(scene, registry, device);
+            auto solver = team.create(make);
             RunState state = read_checkpoint(file, scene.solver, *solver);
             return {std::move(solver), std::move(state),
                     damage.empty() ? "" : damage + "; continued from the checkpoint before it"};
@@ -42,7 +46,7 @@ Resumption read_last_checkpoint(const RunFolder& folder,
         }
     }
     if (!damage.empty()) throw InputError(damage);
-    return {scene::create_solver(scene, registry, device), std::nullopt, "there was no checkpoint yet: started over"};
+    return {team.create(make), std::nullopt, "there was no checkpoint yet: started over"};
 }
 
 }  // namespace
@@ -51,8 +55,16 @@ RunResult run_scene(const scene::Scene& scene,
                     const sim::SolverRegistry& registry,
                     const std::filesystem::path& path,
                     const RunSettings& settings) {
+    const MakeSolver make = [&](const std::shared_ptr<dist::Communicator>& processes) {
+        return scene::create_solver(scene, registry, device_of(settings), processes);
+    };
+    if (follows(settings)) {
+        follow(settings.processes, make);
+        return {};
+    }
+    Team team(settings.processes);
     // What can be wrong with the input is found before anything is written.
-    auto solver = scene::create_solver(scene, registry, device_of(settings));
+    auto solver = team.create(make);
     const std::string resolved = scene::resolved_toml(scene, registry, scene::FileNames::kCopies);
     // A run keeps copies of the films it starts from, so that it can be resumed and repeated wherever it is. They are read
     // before the folder is cleared: they may be in it.
@@ -75,10 +87,22 @@ RunResult run_scene(const scene::Scene& scene,
 RunResult resume_run(const std::filesystem::path& path,
                      const sim::SolverRegistry& registry,
                      const RunSettings& settings) {
+    if (follows(settings)) {
+        std::optional<scene::Scene> scene;
+        follow(settings.processes, [&](const std::shared_ptr<dist::Communicator>& processes) {
+            if (!scene) scene = scene::load_scene(path / "scene.toml", {}, registry);
+            return scene::create_solver(*scene, registry, device_of(settings), processes);
+        });
+        return {};
+    }
+    Team team(settings.processes);
     const RunFolder folder = RunFolder::open(path);
     const scene::Scene scene = scene::load_scene(folder.scene(), {}, registry);
     const Schedule schedule(scene.time, settings.until);
-    Resumption from = read_last_checkpoint(folder, scene, registry, device_of(settings));
+    const MakeSolver make = [&](const std::shared_ptr<dist::Communicator>& processes) {
+        return scene::create_solver(scene, registry, device_of(settings), processes);
+    };
+    Resumption from = read_last_checkpoint(folder, scene, team, make);
 
     if (settings.until && is_after(from.solver->time(), *settings.until))
         throw InputError(fmt::format("{} is at time {:.6g} already, beyond {:.6g}", path.string(), from.solver->time(),

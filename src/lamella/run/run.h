@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -28,6 +29,10 @@ struct RunSettings {
     std::optional<double> until = {};       ///< stop at this time instead of the scene's end
     Existing existing = Existing::kRefuse;  ///< what to do with a run that is in the folder
     std::string device = "cpu";             ///< or "cuda"; recorded in run.json
+    /// The processes that compute together; empty: this one. All of them make the same call. Process 0 returns as
+    /// ever; it alone touches the folder and calls the functions below. The others return when it does, with an empty
+    /// result.
+    std::shared_ptr<dist::Communicator> processes = nullptr;
     /// The input is right and the folder is taken; work begins.
     std::function<void(const scene::Scene&)> on_begin = [](const scene::Scene&) {};
     /// The number of the signal that asks to stop, 0 for none. Asked after every step, and while the solver starts.

@@ -253,8 +253,12 @@ std::string resolved_toml(const Scene& scene, const sim::SolverRegistry& registr
 
 std::unique_ptr<sim::Solver> create_solver(const Scene& scene,
                                            const sim::SolverRegistry& registry,
-                                           Device device) {
+                                           Device device,
+                                           const std::shared_ptr<dist::Communicator>& processes) {
     const sim::SolverEntry& solver = chosen_solver(scene, registry);
+    if (processes && processes->several() && !solver.processes)
+        throw InputError(fmt::format("solver {} computes on one process, and {} were started: use --threads instead",
+                                     solver.name, processes->size()));
     if (device != Device::kCpu && !solver.cuda)
         throw InputError(fmt::format("solver {} does not run on a GPU; use --device cpu", solver.name));
     const auto read_table = [directory = directory_of(scene)](const std::string& file) {
@@ -266,7 +270,8 @@ std::unique_ptr<sim::Solver> create_solver(const Scene& scene,
                           .read_table = read_table,
                           .options = table_of(scene, solver.name),
                           .films = scene.films,
-                          .device = device});
+                          .device = device,
+                          .processes = processes});
 }
 
 }  // namespace lamella::scene

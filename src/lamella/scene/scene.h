@@ -91,10 +91,11 @@ std::string resolved_toml(const Scene& scene,
                           const sim::SolverRegistry& registry,
                           FileNames file_names = FileNames::kAbsolute);
 
-/// The solver of a scene, its options checked, not started.
+/// The solver of a scene, its options checked, not started. @param processes  that compute together; empty: one
 std::unique_ptr<sim::Solver> create_solver(const Scene& scene,
                                            const sim::SolverRegistry& registry,
-                                           Device device = Device::kCpu);
+                                           Device device = Device::kCpu,
+                                           const std::shared_ptr<dist::Communicator>& processes = nullptr);
 
 /// Every solver of this build (solvers.cpp: one plain call each).
 sim::SolverRegistry all_solvers();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lamella/core/device.h"
+#include "lamella/dist/communicator.h"
 #include "lamella/film/problem.h"
 #include "lamella/sim/node.h"
 #include "lamella/sim/options.h"
@@ -38,6 +39,8 @@ struct SolverInput {
     Node options;             ///< the solver's own table; an empty table where the scene has none
     std::shared_ptr<const film::Problem> films = nullptr;  ///< of a film solver; empty for others
     Device device = Device::kCpu;
+    /// The processes that compute together; empty where it is one. Only for solvers that can (SolverEntry::processes).
+    std::shared_ptr<dist::Communicator> processes = nullptr;
 };
 
 struct SolverEntry {
@@ -46,6 +49,7 @@ struct SolverEntry {
     std::string time_unit = "s";
     bool films = false;  ///< starts from the film tables of a scene (SolverInput::films)
     bool cuda = false;   ///< can compute on a GPU
+    bool processes = false;  ///< several processes can compute one run; Solver says how its functions then work
     bool stirring = false;  ///< uses those that stir the liquid of a film: [[vortex]], [[solid]]
     std::function<std::unique_ptr<Solver>(const SolverInput&)> create;  ///< checks the options, does no work
     std::function<std::vector<OptionInfo>()> describe;

@@ -41,6 +41,11 @@ struct StartContext {
 /// state, or `load` takes one from a checkpoint; then `advance` is called until `stop_reason` or the end time.
 ///
 /// The same scene and seed give the same bits on any number of threads; save and load in the middle change nothing.
+///
+/// Where several processes compute together (SolverInput::processes), each has a Solver for its share of the items.
+/// Then start, advance, frame, scalars, save and load are collective: all processes call them in the same order with
+/// the same arguments. frame() shows the process's share, in an order of which each process has one stretch; scalars are
+/// those of the whole; events are complete on process 0; everything else is the same everywhere.
 class Solver {
 public:
     virtual ~Solver() = default;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "lamella/core/parallel.h"
 #include "lamella/spatial/cell_grid.h"
@@ -99,6 +100,51 @@ struct BlockLists {
     std::vector<Entry<D>> entries;
 };
 
+/// One axis of the part of a box that holds the balls of one process. Where it is shorter than the box, it has ends
+/// like a wall, and what lies beyond them is too far to matter.
+struct Window {
+    double origin = 0.0;
+    double length = 0.0;
+    bool whole = true;
+};
+
+/// The shortest window that holds all the points. @param reach  across a gap of this length nothing touches
+Window window_of(const double* x, std::size_t count, double length, bool periodic, double reach) {
+    constexpr std::size_t kBins = 1024;
+    using Bins = std::array<std::uint8_t, kBins>;
+    const auto wrapped = [&](double at) { return periodic ? at - length * std::floor(at / length) : at; };
+    const Bins used = parallel_reduce(
+        count, Bins{},
+        [&](std::size_t begin, std::size_t end) {
+            Bins bins{};
+            for (std::size_t i = begin; i < end; ++i)
+                bins[static_cast<std::size_t>(
+                    std::clamp(wrapped(x[i]) / length * kBins, 0.0, static_cast<double>(kBins - 1)))] = 1;
+            return bins;
+        },
+        [](Bins a, const Bins& b) {
+            for (std::size_t k = 0; k < kBins; ++k) a[k] |= b[k];
+            return a;
+        });
+    // The longest run of empty bins, around the box; on an axis with walls the one across its ends.
+    std::size_t longest = 0;
+    std::size_t end_of_longest = 0;
+    std::size_t run = 0;
+    for (std::size_t k = 0; k < 2 * kBins; ++k) {
+        run = used[k % kBins] != 0 ? 0 : run + 1;
+        const bool across_ends = k + 1 == kBins || (k >= kBins && k - kBins < run);
+        const bool allowed = periodic || across_ends;
+        if (allowed && run > longest && run <= kBins) {
+            longest = run;
+            end_of_longest = (k + 1) % kBins;
+        }
+    }
+    // A bin on either side stays in the window: rounding must not push a point out of it.
+    const double bin = length / static_cast<double>(kBins);
+    if (longest == kBins || longest < 3 || static_cast<double>(longest - 2) * bin <= reach) return {0.0, length, true};
+    return {(static_cast<double>(end_of_longest) - 1.0) * bin, static_cast<double>(kBins - longest + 2) * bin, false};
+}
+
 template <int D>
 void sort_by_id(Entry<D>* begin, Entry<D>* end) {
     const auto before = [](const Entry<D>& a, const Entry<D>& b) {
@@ -112,34 +158,46 @@ void sort_by_id(Entry<D>* begin, Entry<D>* end) {
     }
 }
 
-/// Final places of the balls: windows of the cell order sorted by list length, longest first (a counting sort;
-/// lists too long for it share its last bin, which only costs gaps).
+/// Final places of the balls with lists, those at the border to other processes last: windows of the cell order
+/// sorted by list length, longest first (a counting sort; lists too long for it share its last bin, which only costs
+/// gaps). Also how many balls at the front certainly have no copies in their lists, a multiple of kWindow (or all).
 template <int D>
-std::vector<std::uint32_t> window_order(const std::vector<BlockLists<D>>& blocks, std::size_t count) {
+std::pair<std::vector<std::uint32_t>, std::size_t> window_order(const std::vector<BlockLists<D>>& blocks,
+                                                                const std::vector<std::uint8_t>& at_border) {
     constexpr std::uint32_t kBins = 64;
+    const std::size_t count = at_border.size();
+    std::vector<std::uint32_t> sequence;
+    sequence.reserve(count);
+    for (std::uint32_t i = 0; i < count; ++i)
+        if (at_border[i] == 0) sequence.push_back(i);
+    const std::size_t interior = sequence.size();
+    for (std::uint32_t i = 0; interior < count && i < count; ++i)
+        if (at_border[i] != 0) sequence.push_back(i);
+
     std::vector<std::uint32_t> order(count);
     parallel_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
-        const auto& length = blocks[begin / kBlock].length;
-        const auto bin = [&](std::size_t i) { return kBins - 1 - std::min(length[i - begin], kBins - 1); };
+        const auto bin = [&](std::size_t n) {
+            const std::uint32_t i = sequence[n];
+            return kBins - 1 - std::min(blocks[i / kBlock].length[i % kBlock], kBins - 1);
+        };
         for (std::size_t w = begin; w < end; w += kWindow) {
             const std::size_t window_end = std::min(end, w + kWindow);
             std::array<std::size_t, kBins + 1> place{};
-            for (std::size_t i = w; i < window_end; ++i) ++place[bin(i) + 1];
+            for (std::size_t n = w; n < window_end; ++n) ++place[bin(n) + 1];
             std::partial_sum(place.begin(), place.end(), place.begin());
-            for (std::size_t i = w; i < window_end; ++i) order[w + place[bin(i)]++] = static_cast<std::uint32_t>(i);
+            for (std::size_t n = w; n < window_end; ++n) order[w + place[bin(n)]++] = sequence[n];
         }
     });
-    return order;
+    return {std::move(order), interior == count ? padded(count) : interior / kWindow * kWindow};
 }
 
 template <int D>
 void fill(const std::vector<BlockLists<D>>& blocks,
           const std::vector<std::uint32_t>& order,
+          const std::vector<std::uint32_t>& place,
           bool images,
           NeighborList<D>& list) {
     const std::size_t count = order.size();
-    std::vector<std::uint32_t> place(count);  // cell order -> final
-    parallel_for(count, [&](std::size_t i) { place[order[i]] = static_cast<std::uint32_t>(i); });
     std::vector<std::uint32_t> first(count);  // of each ball's entries within its block
     parallel_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
         std::uint32_t at = 0;
@@ -179,6 +237,33 @@ void fill(const std::vector<BlockLists<D>>& blocks,
     });
 }
 
+/// The balls in the frame that they are searched in: all of the box, or a window around the balls of this process.
+template <int D>
+struct Frame {
+    PeriodicBox<D> box;
+    std::array<Column, D> position;
+};
+
+template <int D>
+Frame<D> frame_of(const PeriodicBox<D>& box, std::array<const double*, D> position, std::size_t count, double reach) {
+    Frame<D> frame{box, {}};
+    for (std::size_t k = 0; k < D; ++k) {
+        const double length = box.lengths[k];
+        const Window window = window_of(position[k], count, length, box.periodic[k], reach);
+        frame.position[k].assign(position[k], position[k] + count);
+        if (window.whole) continue;
+        frame.box.lengths[k] = window.length;
+        frame.box.periodic[k] = false;
+        const double origin = window.origin;
+        const bool around = box.periodic[k];
+        parallel_for(count, [&](std::size_t i) {
+            const double x = frame.position[k][i] - origin;
+            frame.position[k][i] = around ? x - length * std::floor(x / length) : x;
+        });
+    }
+    return frame;
+}
+
 }  // namespace
 
 template <int D>
@@ -187,15 +272,22 @@ NeighborSearch<D> find_neighbors(const PeriodicBox<D>& box,
                                  const double* radius,
                                  const std::int64_t* id,
                                  std::size_t count,
-                                 double skin) {
-    const double largest = parallel_max(count, 0.0, [&](std::size_t i) { return radius[i]; });
+                                 double skin,
+                                 const Copies& copies) {
+    const std::size_t owned = count - copies.count;
+    const double largest = parallel_max(count, copies.largest_radius, [&](std::size_t i) { return radius[i]; });
     const double mean = parallel_sum(count, [&](std::size_t i) { return radius[i]; }) /
                         static_cast<double>(std::max<std::size_t>(count, 1));
     bool images = false;
     for (std::size_t k = 0; k < D; ++k)
         images = images || (box.periodic[k] && box.lengths[k] <= 2.0 * (2.0 * largest + skin));
 
-    const CellGrid<D> grid(box, position, count, 2.5 * mean);
+    Frame<D> frame{box, {}};
+    if (copies.count > 0 && !images) {
+        frame = frame_of<D>(box, position, count, 2.0 * largest + skin);
+        for (std::size_t k = 0; k < D; ++k) position[k] = frame.position[k].data();
+    }
+    const CellGrid<D> grid(frame.box, position, count, 2.5 * mean);
     const auto cell_order = grid.order();
     SortedBalls<D> balls;
     for (auto& column : balls.position) column.resize(count + kLanes);  // the last group may be read past its end
@@ -205,33 +297,47 @@ NeighborSearch<D> find_neighbors(const PeriodicBox<D>& box,
         balls.radius[i] = radius[cell_order[i]];
     });
 
-    const Search<D> search(box, grid, balls, skin, images);
-    std::vector<BlockLists<D>> blocks((count + kBlock - 1) / kBlock);
-    parallel_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> subjects;
+    subjects.reserve(owned);
+    for (std::uint32_t i = 0; i < count; ++i)
+        if (cell_order[i] < owned) subjects.push_back(i);
+    const Search<D> search(frame.box, grid, balls, skin, images);
+    std::vector<BlockLists<D>> blocks((owned + kBlock - 1) / kBlock);
+    std::vector<std::uint8_t> at_border(owned, 0);
+    parallel_blocks(owned, kBlock, [&](std::size_t begin, std::size_t end) {
         BlockLists<D>& lists = blocks[begin / kBlock];
         lists.length.resize(end - begin);
         lists.entries.reserve((end - begin) * (D == 2 ? 7 : 14));
-        for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t s = begin; s < end; ++s) {
             const std::size_t before = lists.entries.size();
+            const std::size_t i = subjects[s];
             search.visit(i, balls.radius[i] + largest + skin, [&](std::size_t j, std::array<std::int8_t, D> image) {
                 lists.entries.push_back({id[cell_order[j]], static_cast<std::uint32_t>(j), image});
+                if (cell_order[j] >= owned) at_border[s] = 1;
             });
             sort_by_id(lists.entries.data() + before, lists.entries.data() + lists.entries.size());
-            lists.length[i - begin] = static_cast<std::uint32_t>(lists.entries.size() - before);
+            lists.length[s - begin] = static_cast<std::uint32_t>(lists.entries.size() - before);
         }
     });
 
     NeighborSearch<D> result;
-    std::vector<std::uint32_t> order = window_order(blocks, count);
-    fill(blocks, order, images, result.list);
-    result.order = std::move(order);
-    parallel_for(count, [&](std::size_t i) { result.order[i] = cell_order[result.order[i]]; });
+    const auto [order, interior] = window_order(blocks, at_border);
+    result.list.interior_groups = interior / kLanes;
+    std::vector<std::uint32_t> place(count);  // cell order -> final
+    const std::size_t first_copy = padded(owned);
+    parallel_for(count, [&](std::size_t i) {
+        if (cell_order[i] >= owned) place[i] = static_cast<std::uint32_t>(first_copy + cell_order[i] - owned);
+    });
+    parallel_for(owned, [&](std::size_t n) { place[subjects[order[n]]] = static_cast<std::uint32_t>(n); });
+    fill(blocks, order, place, images, result.list);
+    result.order.resize(owned);
+    parallel_for(owned, [&](std::size_t n) { result.order[n] = cell_order[subjects[order[n]]]; });
     return result;
 }
 
 template NeighborSearch<2> find_neighbors<2>(const PeriodicBox<2>&, std::array<const double*, 2>, const double*,
-                                             const std::int64_t*, std::size_t, double);
+                                             const std::int64_t*, std::size_t, double, const Copies&);
 template NeighborSearch<3> find_neighbors<3>(const PeriodicBox<3>&, std::array<const double*, 3>, const double*,
-                                             const std::int64_t*, std::size_t, double);
+                                             const std::int64_t*, std::size_t, double, const Copies&);
 
 }  // namespace lamella::spatial

@@ -30,6 +30,9 @@ struct NeighborList {
     /// how many box lengths to subtract from the separation x_i - x_j. Otherwise empty: take the nearest image.
     std::array<Column, D> image;
 
+    /// The first of groups() whose balls may have copies of other processes' balls in their lists.
+    std::size_t interior_groups = 0;
+
     bool has_images() const { return !image[0].empty(); }
     std::size_t groups() const { return group_start.empty() ? 0 : group_start.size() - 1; }
 };
@@ -40,7 +43,16 @@ struct NeighborSearch {
     NeighborList<D> list;              ///< in new indices
 };
 
+/// Balls of other processes among those searched.
+struct Copies {
+    std::size_t count = 0;  ///< the last so many balls are copies: they get no lists, but stand in those of others
+    double largest_radius = 0.0;  ///< over all processes; where there is but one, it need not be given
+};
+
 /// Finds every pair (and image) nearer than R_i + R_j + skin.
+///
+/// In the lists the copies are balls padded(n), padded(n) + 1, ... with n the number of other balls, in the order
+/// given. Balls that have copies in their lists come last in `order`.
 ///
 /// @param position  D columns, `radius`, `id`: at least `count` entries each; ids are distinct
 /// Costs about (reach / cell)^D candidates per ball with reach = R_i + R_max + skin.
@@ -50,6 +62,7 @@ NeighborSearch<D> find_neighbors(const PeriodicBox<D>& box,
                                  const double* radius,
                                  const std::int64_t* id,
                                  std::size_t count,
-                                 double skin);
+                                 double skin,
+                                 const Copies& copies = {});
 
 }  // namespace lamella::spatial

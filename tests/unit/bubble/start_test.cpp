@@ -11,7 +11,9 @@ using namespace test;
 template <int D>
 Foam<D> packed(const Options& o) {
     Foam<D> foam;
-    pack<D>(o, 7, {}, foam);
+    dist::Alone alone;
+    pack<D>(o, 7, {}, alone, foam);
+    part_coincident<D>(o, 7, foam);
     return foam;
 }
 
@@ -47,7 +49,8 @@ TEST(Start, ScalesToTheGasFractionExactly) {
     o.box_shape = {{2.0, 1.0, 1.0}};
     for (const double phi : {0.5, 0.95, 1.1}) {
         auto foam = packed<3>(o);
-        scale_to_gas_fraction<3>(o, phi, foam);
+        dist::Alone alone;
+        scale_to_gas_fraction<3>(o, phi, Domain(alone), foam);
         EXPECT_NEAR(gas_fraction(foam), phi, 1e-13);
         EXPECT_NEAR(foam.box.lengths[0], 2.0 * foam.box.lengths[1], 1e-12);
         for (std::size_t i = 0; i < foam.slots; ++i)

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "lamella/core/parallel.h"
 #include "lamella/core/random.h"
@@ -129,6 +131,78 @@ TEST(NeighborList, FindsBallsOutsideTheWalls) {
     discs.position[1][3] = -0.7;
     discs.position[1][4] = 10.9;
     EXPECT_EQ(listed(discs, 0.3), brute_force(discs, 0.3));
+}
+
+/// Lists of the balls whose center lies in the box from `low` to `high` (shares of the edges; around the end where high
+/// > 1), with the others near it as copies, against those of all balls.
+template <int D>
+void expect_same_lists_of_a_part(const Balls<D>& b, double skin, double low, double high) {
+    const auto inside = [&](std::size_t i) {
+        bool in = true;
+        for (std::size_t k = 0; k < D; ++k) {
+            const double u = b.position[k][i] / b.box.lengths[k];
+            in = in && ((u >= low && u < high) || u < high - 1.0);
+        }
+        return in;
+    };
+    const auto all = listed(b, skin);
+    std::set<std::int64_t> owned_ids;
+    std::set<std::int64_t> near_ids;
+    for (std::size_t i = 0; i < b.radius.size(); ++i)
+        if (inside(i)) owned_ids.insert(b.id[i]);
+    for (const auto& pair : all)
+        if (owned_ids.contains(pair[0])) near_ids.insert(pair[1]);
+    Balls<D> part{b.box, {}, {}, {}};
+    const auto take = [&](std::size_t i) {
+        for (std::size_t k = 0; k < D; ++k) part.position[k].push_back(b.position[k][i]);
+        part.radius.push_back(b.radius[i]);
+        part.id.push_back(b.id[i]);
+    };
+    for (std::size_t i = 0; i < b.radius.size(); ++i)
+        if (inside(i)) take(i);
+    const std::size_t owned = part.radius.size();
+    for (std::size_t i = 0; i < b.radius.size(); ++i)
+        if (!inside(i) && near_ids.contains(b.id[i])) take(i);
+    const std::size_t count = part.radius.size();
+    ASSERT_GT(owned, 0U);
+
+    const double largest = *std::max_element(b.radius.begin(), b.radius.end());
+    const auto search = find_neighbors<D>(part.box, part.pointers(), part.radius.data(), part.id.data(), count, skin,
+                                          {.count = count - owned, .largest_radius = largest});
+    ASSERT_EQ(search.order.size(), owned);
+    std::set<std::array<std::int64_t, 2>> found;
+    for (std::size_t i = 0; i < padded(owned); ++i)
+        for (std::size_t e = search.list.group_start[i / kLanes] + i % kLanes;
+             e < search.list.group_start[i / kLanes + 1]; e += kLanes) {
+            const std::uint32_t j = search.list.index[e];
+            if (j == owned) continue;
+            ASSERT_LT(i, owned);
+            const bool copy = j >= padded(owned);
+            if (copy) {
+                EXPECT_GE(i / kLanes, search.list.interior_groups) << "a copy in the list of an interior ball";
+            }
+            const std::int64_t other = part.id[copy ? owned + j - padded(owned) : search.order[j]];
+            found.insert({part.id[search.order[i]], other});
+        }
+    std::set<std::array<std::int64_t, 2>> expected;
+    for (const auto& pair : all)
+        if (owned_ids.contains(pair[0])) expected.insert({pair[0], pair[1]});
+    EXPECT_EQ(found, expected);
+}
+
+TEST(NeighborList, OfAPartOfTheBoxIsThatOfTheWhole) {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        const bool walls = seed % 2 == 1;
+        for (const auto& [low, high] : {std::pair{0.0, 0.5}, {0.3, 0.6}, {0.75, 1.25}, {0.0, 1.0}, {0.5, 1.0}}) {
+            auto discs = random_balls<2>(700, {{60.0, 50.0}}, walls, 1.0, seed);
+            if (walls) discs.position[1][3] = -0.7;
+            expect_same_lists_of_a_part(discs, 0.3, low, high);
+            expect_same_lists_of_a_part(random_balls<3>(900, {{22.0, 24.0, 26.0}}, walls, 0.8, seed), 0.2, low, high);
+            expect_same_lists_of_a_part(random_balls<2>(60, {{60.0, 5.0}}, walls, 1.0, seed), 0.3, low, high);
+        }
+    }
+    const auto large = random_balls<2>(20'000, {{250.0, 250.0}}, false, 1.0, 1);
+    expect_same_lists_of_a_part(large, 0.3, 0.2, 0.7);
 }
 
 TEST(NeighborList, WastesLittleOnGaps) {

@@ -37,7 +37,7 @@ Loop::Loop(const RunFolder& folder,
       settings_(settings),
       solver_(std::move(solver)),
       log_file_(folder.log()),
-      provenance_(folder.provenance(), scene, settings.device),
+      provenance_(folder.provenance(), scene, settings.device, settings.processes ? settings.processes->size() : 1),
       series_(folder.series()) {
     record_.time_unit = solver_->time_unit();
     settings_.on_begin(scene_);

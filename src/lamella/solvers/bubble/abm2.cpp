@@ -51,7 +51,7 @@ public:
     IntegratorState state() const override { return {.next_step = next_step_}; }
     void set_state(const IntegratorState& state) override { next_step_ = state.next_step; }
 
-    void save(sim::StateWriter& out, const std::vector<std::uint32_t>& order) const override;
+    void save(sim::StateWriter& out, const IdOrder<D>& order) const override;
     void load(sim::StateReader& in, System<D>& system) override;
 
 private:
@@ -203,11 +203,10 @@ Step Abm2<D>::step(System<D>& system, double longest) {
 }
 
 template <int D>
-void Abm2<D>::save(sim::StateWriter& out, const std::vector<std::uint32_t>& order) const {
+void Abm2<D>::save(sim::StateWriter& out, const IdOrder<D>& order) const {
     const auto write = [&](const std::string& name, const Column& column) {
-        std::vector<double> sorted(order.size());
-        for (std::size_t n = 0; n < order.size(); ++n) sorted[n] = column[order[n]];
-        out.write(name, std::span<const double>(sorted));
+        const std::vector<double> sorted = order.column([&](std::size_t i) { return column[i]; });
+        out.write_part(name, std::span<const double>(sorted), order.part());
     };
     out.write_value("integrator/next_step", next_step_);
     out.write_value("integrator/last_step", last_step_);
@@ -217,10 +216,10 @@ void Abm2<D>::save(sim::StateWriter& out, const std::vector<std::uint32_t>& orde
 
 template <int D>
 void Abm2<D>::load(sim::StateReader& in, System<D>& system) {
-    const std::size_t count = system.foam.slots;
+    const auto total = system.foam.live;
     const auto read = [&](const std::string& name, Column& column) {
         std::vector<double> values;
-        in.read(name, count, values);
+        in.read_part(name, total, values);
         column.assign(system.length(), 0.0);
         std::copy(values.begin(), values.end(), column.begin());
     };

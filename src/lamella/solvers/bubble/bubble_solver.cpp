@@ -9,6 +9,7 @@
 #include "lamella/core/error.h"
 #include "lamella/core/fixed_sum.h"
 #include "lamella/core/parallel.h"
+#include "lamella/dist/agree.h"
 #include "lamella/solvers/bubble/census.h"
 #include "lamella/solvers/bubble/detail/device_runner.h"
 #include "lamella/solvers/bubble/relax.h"
@@ -89,8 +90,10 @@ std::vector<GivenBubble> read_bubbles(const Options& o, const sim::SolverInput& 
 
 template <int D>
 BubbleSolver<D>::BubbleSolver(const Options& options, const sim::SolverInput& input)
-    : options_(options), input_(input) {
+    : options_(options), input_(input), domain_(input.processes ? *input.processes : static_cast<dist::Communicator&>(alone_)) {
     check_together(options, input.options);
+    if (input.device != Device::kCpu && domain_.several())
+        throw InputError(input.options.where, "several processes compute on CPUs only; use --device cpu, or one process");
     if (input.device != Device::kCpu)
         if (const std::string what = detail::not_on_device(options); !what.empty())
             throw InputError(input.options.where, what + " does not run on a GPU; use --device cpu");
@@ -111,12 +114,17 @@ void BubbleSolver<D>::make_integrator() {
 template <int D>
 void BubbleSolver<D>::start(const sim::StartContext& context) {
     System<D>& s = *system_;
-    const std::vector<GivenBubble> given = read_bubbles(options_, input_);
+    const std::vector<GivenBubble> given =
+        dist::together(domain_.processes(), [&] { return read_bubbles(options_, input_); });
     context.progress("packing", 0.0);
-    pack<D>(options_, input_.seed, given, s.foam);
+    pack<D>(options_, input_.seed, given, domain_.processes(), s.foam);
+    domain_.expect_items(static_cast<double>(s.foam.live));
+    s.distribute();
+    part_coincident(options_, input_.seed, s.foam);
     const bool dilates = options_.start.relax_gas_fraction > 0.0;
     if (!has_file_box(options_))
-        scale_to_gas_fraction<D>(options_, dilates ? options_.start.relax_gas_fraction : options_.gas_fraction, s.foam);
+        scale_to_gas_fraction<D>(options_, dilates ? options_.start.relax_gas_fraction : options_.gas_fraction, domain_,
+                                 s.foam);
     remember_start();
     s.prepare(LiquidMotion::kAtRest);
     s.rebuild();
@@ -127,12 +135,13 @@ void BubbleSolver<D>::start(const sim::StartContext& context) {
                                 relaxation.iterations, relaxation.residual,
                                 relaxation.at_rest ? "" : ", above bubble.start.force_tolerance"));
     }
-    if (dilates && !has_file_box(options_)) scale_to_gas_fraction<D>(options_, options_.gas_fraction, s.foam);
+    if (dilates && !has_file_box(options_)) scale_to_gas_fraction<D>(options_, options_.gas_fraction, domain_, s.foam);
     remember_start();
     s.prepare(LiquidMotion::kAsGiven);
     s.rebuild();
     make_integrator();
     integrator_->begin(s);
+    look_for_the_largest();
     take_to_device();
 }
 
@@ -161,10 +170,9 @@ std::size_t BubbleSolver<D>::live() const {
 }
 
 template <int D>
-double BubbleSolver<D>::largest_size() const {
+void BubbleSolver<D>::look_for_the_largest() {
     const Foam<D>& foam = system_->foam;
-    return device_ ? device_->control().max_size
-                   : parallel_max(foam.slots, 0.0, [&](std::size_t i) { return foam.size[i]; });
+    largest_size_ = domain_.largest(parallel_max(foam.slots, 0.0, [&](std::size_t i) { return foam.size[i]; }));
 }
 
 /// Many steps at once, as far as nothing of the host's is due.
@@ -176,6 +184,7 @@ sim::StepReport BubbleSolver<D>::advance_on_device(double time_limit) {
     observed_ = false;
     const detail::Control& control = device_->control();
     clock_ = control.clock;
+    largest_size_ = control.max_size;
     for (const detail::VanishedBubble<D>& bubble : device_->take_vanished()) {
         sim::Event event{.time = bubble.time, .kind = "remove", .position = {}, .detail = fmt::format("bubble {}", bubble.id)};
         for (std::size_t k = 0; k < D; ++k) event.position[k] = bubble.position[k];
@@ -207,7 +216,7 @@ void BubbleSolver<D>::remember_start() {
     model.total_size = start_gas_;
     model.largest_count = static_cast<double>(start_count_);
     model.initial_mean_radius = system_->mean_radius();
-    model.initial_mean_surface = exact_sum(foam.slots, [&](std::size_t i) {
+    model.initial_mean_surface = domain_.exact_sum(foam.slots, [&](std::size_t i) {
                                      return Shape<D>::surface(Shape<D>::radius(foam.size[i]));
                                  }) /
                                  model.largest_count;
@@ -223,6 +232,7 @@ sim::StepReport BubbleSolver<D>::advance(double time_limit) {
 
     std::vector<sim::Event> removed = remove_vanished(*system_, options_.compat.removal);
     if (!removed.empty()) integrator_->foam_changed();
+    look_for_the_largest();
     for (sim::Event& event : removed) {
         event.time = clock_.time;
         events_.push_back(std::move(event));
@@ -234,7 +244,7 @@ template <int D>
 std::optional<std::string> BubbleSolver<D>::stop_reason() const {
     if (live() <= static_cast<std::size_t>(options_.end_count))
         return fmt::format("{} bubbles are left (bubble.end_count = {})", live(), options_.end_count);
-    const double largest = Shape<D>::radius(largest_size());
+    const double largest = Shape<D>::radius(largest_size_);
     if (2.0 * largest >= system_->foam.box.shortest_edge())
         return fmt::format("the largest bubble, of radius {:.4g}, spans the box", largest);
     return std::nullopt;
@@ -265,18 +275,6 @@ template <int D>
 void BubbleSolver<D>::mark_frame() {
     if (device_) device_->mark_frame();
     if (observed_) system_->foam.marked = system_->foam.position;
-}
-
-/// Slots of the live bubbles by id: what leaves the solver does not depend on how bubbles are stored.
-template <int D>
-std::vector<std::uint32_t> BubbleSolver<D>::id_order() const {
-    const Foam<D>& foam = system_->foam;
-    std::vector<std::uint32_t> order;
-    order.reserve(foam.live);
-    for (std::size_t i = 0; i < foam.slots; ++i)
-        if (foam.alive(i)) order.push_back(static_cast<std::uint32_t>(i));
-    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return foam.id[a] < foam.id[b]; });
-    return order;
 }
 
 template class BubbleSolver<2>;

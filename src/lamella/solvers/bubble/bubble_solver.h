@@ -6,6 +6,7 @@
 #include "lamella/sim/registry.h"
 #include "lamella/sim/solver.h"
 #include "lamella/solvers/bubble/clock.h"
+#include "lamella/solvers/bubble/id_order.h"
 #include "lamella/solvers/bubble/integrator.h"
 #include "lamella/solvers/bubble/options.h"
 #include "lamella/solvers/bubble/system.h"
@@ -50,7 +51,7 @@ public:
     }
 
 private:
-    std::vector<std::uint32_t> id_order() const;
+    IdOrder<D> id_order() const { return IdOrder<D>(*system_, start_count_); }
     void remember_start();
     void make_integrator();
     void take_to_device();
@@ -58,12 +59,14 @@ private:
     /// Brings the foam up to date with the device, where that holds it.
     void observe() const;
     std::size_t live() const;
-    double largest_size() const;
+    /// Remembers the largest bubble of the foam, which decides whether it still fits its box.
+    void look_for_the_largest();
 
     Options options_;
     sim::SolverInput input_;
     double time_rate_;  ///< solver time per mechanical time
-    LocalDomain domain_;
+    dist::Alone alone_;
+    Domain domain_;
     std::unique_ptr<System<D>> system_;
     std::unique_ptr<Integrator<D>> integrator_;
 
@@ -74,6 +77,7 @@ private:
     Clock clock_;
     double start_gas_ = 0.0;     ///< sum of q at the start
     std::int64_t start_count_ = 0;
+    double largest_size_ = 0.0;  ///< q of the largest bubble
     std::vector<sim::Event> events_;
 };
 

@@ -9,7 +9,9 @@
 namespace lamella::bubble {
 
 template <int D>
-Census<D> take_census(const System<D>& system, const Options& options) {
+Census<D> take_census(System<D>& system, const Options& options) {
+    system.refresh_copies();
+    const Domain& domain = system.domain();
     const Foam<D>& foam = system.foam;
     const auto& neighbors = system.neighbors();
     const std::size_t length = system.length();
@@ -59,13 +61,13 @@ Census<D> take_census(const System<D>& system, const Options& options) {
 
     // Every contact was met twice.
     const auto half_sum = [&](const Column& column) {
-        return 0.5 * exact_sum(foam.slots, [&](std::size_t i) { return column[i]; });
+        return 0.5 * domain.exact_sum(foam.slots, [&](std::size_t i) { return column[i]; });
     };
     census.total_energy = half_sum(census.energy);
     census.total_energy_thesis = 2.0 * half_sum(census.energy_thesis);
     for (std::size_t c = 0; c < virial.size(); ++c) census.stress[c] = -half_sum(virial[c]) / foam.box.volume();
     const auto surface_sum = [&](bool free_only, bool by_radius) {
-        return exact_sum(foam.slots, [&](std::size_t i) {
+        return domain.exact_sum(foam.slots, [&](std::size_t i) {
             if (!foam.alive(i)) return 0.0;
             const double radius = Shape<D>::radius(foam.size[i]);
             const double surface = Shape<D>::surface(radius) * (free_only ? census.free_surface[i] : 1.0);
@@ -77,12 +79,13 @@ Census<D> take_census(const System<D>& system, const Options& options) {
     census.critical_radius = free > 0.0 ? free / surface_sum(true, true) : 0.0;
     std::int64_t twice = 0;
     for (std::size_t i = 0; i < foam.slots; ++i) twice += census.contacts[i];
+    twice = domain.sum(twice);
     census.total_contacts = twice / 2;
     if (twice > 0) census.mean_contact_force = half_sum(census.force) / static_cast<double>(census.total_contacts);
     return census;
 }
 
-template Census<2> take_census<2>(const System<2>&, const Options&);
-template Census<3> take_census<3>(const System<3>&, const Options&);
+template Census<2> take_census<2>(System<2>&, const Options&);
+template Census<3> take_census<3>(System<3>&, const Options&);
 
 }  // namespace lamella::bubble

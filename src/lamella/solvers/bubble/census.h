@@ -28,7 +28,8 @@ struct Census {
     std::array<double, static_cast<std::size_t>(D * D)> stress{};
 };
 
+/// Collective; the sums are those of the whole foam. Brings the copies in system.foam up to date.
 template <int D>
-Census<D> take_census(const System<D>& system, const Options& options);
+Census<D> take_census(System<D>& system, const Options& options);
 
 }  // namespace lamella::bubble

@@ -86,24 +86,29 @@ void add_block_sums(const Model& model,
     }
 }
 
+/// The pass over groups first_group .. end_group - 1.
 template <int D, bool kGas, bool kStiffness, bool kImages>
 Sums pass(const Model& model,
           const PeriodicBox<D>& box,
           const NeighborList<D>& neighbors,
+          std::size_t first_group,
+          std::size_t end_group,
           const Stage<D>& stage,
           Rates<D>& rates) {
-    constexpr std::size_t kBlock = 2048;
-    const std::size_t length = neighbors.groups() * kLanes;
-    std::vector<Sums> parts((length + kBlock - 1) / kBlock, Sums{empty_gas_sums<D>(model)});
+    constexpr std::size_t kBlock = 2048 / kLanes;
+    const std::size_t count = end_group - first_group;
+    std::vector<Sums> parts((count + kBlock - 1) / kBlock, Sums{empty_gas_sums<D>(model)});
     const Vec<D> inverse_lengths = box.inverse_lengths();
-    parallel_blocks(length, kBlock, [&](std::size_t begin, std::size_t end) {
+    parallel_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
         Sums& sums = parts[begin / kBlock];
+        const std::size_t last = first_group + end;
         double stiffest = 0.0;
-        for (std::size_t group = begin / kLanes; group < end / kLanes; ++group)
+        for (std::size_t group = first_group + begin; group < last; ++group)
             stiffest = std::max(stiffest, contacts_of_group<D, kGas, kStiffness, kImages>(
                                               group, model, box, inverse_lengths, neighbors, stage, rates));
         sums.stiffness = stiffest;
-        if constexpr (kGas) add_block_sums(model, stage, rates, begin, end, sums.gas);
+        if constexpr (kGas)
+            add_block_sums(model, stage, rates, (first_group + begin) * kLanes, last * kLanes, sums.gas);
     });
     Sums total{empty_gas_sums<D>(model)};
     for (const Sums& part : parts) total += part;
@@ -133,9 +138,15 @@ Evaluation contact_pass(const Model& model,
                         Rates<D>& rates) {
     const bool with_gas = gas == Gas::kOn && model.exchanges_gas();
     const bool bound = stiffness == Stiffness::kBound;
-    const Sums sums = with_constants(with_gas, bound, neighbors.has_images(), [&](auto g, auto s, auto i) {
-        return pass<D, g(), s(), i()>(model, box, neighbors, stage, rates);
-    });
+    const auto over = [&](std::size_t first_group, std::size_t end_group) {
+        return with_constants(with_gas, bound, neighbors.has_images(), [&](auto g, auto s, auto i) {
+            return pass<D, g(), s(), i()>(model, box, neighbors, first_group, end_group, stage, rates);
+        });
+    };
+    // The copies are on their way: first what does not need them.
+    Sums sums = over(0, neighbors.interior_groups);
+    domain.end_refresh();
+    sums += over(neighbors.interior_groups, neighbors.groups());
     Evaluation result;
     if (with_gas) {
         FixedSum all[] = {sums.gas.weight, sums.gas.weight_by_size, sums.gas.scale};

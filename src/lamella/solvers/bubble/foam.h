@@ -24,13 +24,14 @@ std::array<const double*, D> pointers(const Columns<D>& columns) {
     return p;
 }
 
-/// The bubbles. Columns hold `slots` bubbles and spare entries of zeros up to spatial::padded(slots). A bubble that
-/// vanished keeps its slot, with size 0, until the neighbor lists are built anew.
+/// The bubbles that this process owns. Columns hold `slots` bubbles and spare entries of zeros up to
+/// spatial::padded(slots); columns that neighbors read may go on with copies of other processes' bubbles (Domain). A
+/// bubble that vanished keeps its slot, with size 0, until the neighbor lists are built anew.
 template <int D>
 struct Foam {
     spatial::PeriodicBox<D> box;
     std::size_t slots = 0;
-    std::size_t live = 0;
+    std::size_t live = 0;  ///< bubbles of the whole foam; with several processes most are elsewhere
 
     Columns<D> position;      ///< in [0, L) on periodic axes
     Column size;              ///< q = R^d; 0: vanished

@@ -6,6 +6,7 @@
 
 #include "lamella/sim/archive.h"
 #include "lamella/solvers/bubble/clock.h"
+#include "lamella/solvers/bubble/id_order.h"
 #include "lamella/solvers/bubble/integrator_state.h"
 #include "lamella/solvers/bubble/system.h"
 
@@ -30,7 +31,8 @@ public:
     virtual IntegratorState state() const = 0;
     virtual void set_state(const IntegratorState& state) = 0;
 
-    virtual void save(sim::StateWriter& out, const std::vector<std::uint32_t>& order) const = 0;
+    virtual void save(sim::StateWriter& out, const IdOrder<D>& order) const = 0;
+    /// The foam holds this process's share of the bubbles, as they were read.
     virtual void load(sim::StateReader& in, System<D>& system) = 0;
 };
 

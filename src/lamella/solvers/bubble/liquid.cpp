@@ -73,10 +73,7 @@ void Liquid<D>::solve_pairwise(Domain& domain, std::size_t count, Columns<D>& ve
         return 1.0 + ratio * static_cast<double>(contact_start_[i + 1] - contact_start_[i]);
     };
     const auto multiply = [&](Columns<D>& v, Columns<D>& result) {
-        for (auto& column : v) {
-            Column* const one[] = {&column};
-            domain.halo(one);
-        }
+        domain.refresh_all(v);
         parallel_for(count, [&](std::size_t i) {
             Vec<D> sum = diagonal(i) * at<D>(v, i);
             for (std::uint64_t c = contact_start_[i]; c < contact_start_[i + 1]; ++c)
@@ -85,7 +82,7 @@ void Liquid<D>::solve_pairwise(Domain& domain, std::size_t count, Columns<D>& ve
         });
     };
     const auto product = [&](const Columns<D>& a, const Columns<D>& b, bool preconditioned) {
-        return exact_sum(count, [&](std::size_t i) {
+        return domain.exact_sum(count, [&](std::size_t i) {
             const double p = dot(at<D>(a, i), at<D>(b, i));
             return preconditioned ? p / diagonal(i) : p;
         });
@@ -118,13 +115,14 @@ void Liquid<D>::solve_pairwise(Domain& domain, std::size_t count, Columns<D>& ve
 template <int D>
 double Liquid<D>::apply(const spatial::NeighborList<D>& neighbors,
                         const Stage<D>& stage,
-                        const Columns<D>& last_velocity,
+                        Columns<D>& last_velocity,
                         Domain& domain,
                         Rates<D>& rates) {
     if (law_.trivial()) return 0.0;
     const std::size_t count = neighbors.groups() * kLanes;
     const bool pairwise = options_.drag == Drag::kPairwise;
     if (options_.drag != Drag::kBackground) find_contacts(neighbors, stage);
+    if (options_.drag == Drag::kNeighborLagged) domain.refresh_all(last_velocity);
 
     const auto liquid_velocity = [&](std::size_t i, const Vec<D>& x) {
         if (!law_.takes_mean_of_neighbors(x, stage.radius[i])) return law_.flow(x, stage.radius[i]);

@@ -16,12 +16,13 @@ class Liquid {
 public:
     Liquid(const Options& options, const Model& model, const spatial::PeriodicBox<D>& box);
 
-    /// Completes rates.velocity, which holds the pushes. @param last_velocity  of the last accepted state
+    /// Completes rates.velocity, which holds the pushes. @param last_velocity  of the last accepted state; its copies
+    /// are brought up to date
     /// @returns  largest relaxation rate of a wall contact
     /// @throws NumericalError  the linear system of pairwise drag does not converge
     double apply(const spatial::NeighborList<D>& neighbors,
                  const Stage<D>& stage,
-                 const Columns<D>& last_velocity,
+                 Columns<D>& last_velocity,
                  Domain& domain,
                  Rates<D>& rates);
 

@@ -52,7 +52,7 @@ double error_norm(const System<D>& system, ErrorNorm norm, Estimate&& estimate) 
     };
     const std::size_t count = system.foam.slots;
     if (norm == ErrorNorm::kMax) return system.domain().largest(parallel_max(count, 0.0, of_bubble));
-    const double squares = exact_sum(count, [&](std::size_t i) { return of_bubble(i) * of_bubble(i); });
+    const double squares = system.domain().exact_sum(count, [&](std::size_t i) { return of_bubble(i) * of_bubble(i); });
     return std::sqrt(squares / static_cast<double>(system.foam.live));
 }
 

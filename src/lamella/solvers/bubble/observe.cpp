@@ -9,18 +9,20 @@
 #include "lamella/core/parallel.h"
 #include "lamella/solvers/bubble/bubble_solver.h"
 #include "lamella/solvers/bubble/census.h"
+#include "lamella/solvers/bubble/process_plan.h"
 
 namespace lamella::bubble {
 namespace {
 
-template <class Value>
-sim::Field field(const char* name, int components, const std::vector<std::uint32_t>& order, Value&& value) {
+template <int D, class Value>
+sim::Field field(const char* name, int components, const IdOrder<D>& order, Value&& value) {
     sim::Field f{.name = name, .unit = "-", .components = components, .integer = false, .values = {}};
     const auto c = static_cast<std::size_t>(components);
-    f.values.resize(c * order.size());
-    parallel_for(order.size(), [&](std::size_t n) {
-        for (std::size_t k = 0; k < c; ++k) f.values[c * n + k] = value(order[n], k);
-    });
+    f.values.resize(c * order.count());
+    for (std::size_t k = 0; k < c; ++k) {
+        const std::vector<double> column = order.column([&](std::size_t i) { return double(value(i, k)); });
+        parallel_for(order.count(), [&](std::size_t n) { f.values[c * n + k] = column[n]; });
+    }
     return f;
 }
 
@@ -36,7 +38,7 @@ template <int D>
 sim::Frame BubbleSolver<D>::frame() const {
     observe();
     const Foam<D>& foam = system_->foam;
-    const auto order = id_order();
+    const IdOrder<D> order = id_order();
     const Census<D> census = take_census(*system_, options_);
     const Column& energy = options_.compat.energy ? census.energy_thesis : census.energy;
     const Vec<D> inverse = foam.box.inverse_lengths();
@@ -53,12 +55,12 @@ sim::Frame BubbleSolver<D>::frame() const {
         frame.box->periodic[k] = foam.box.periodic[k];
     }
     frame.points.length_unit = "-";
-    frame.points.position.resize(order.size());
-    frame.points.radius.resize(order.size());
-    parallel_for(order.size(), [&](std::size_t n) {
-        for (std::size_t k = 0; k < D; ++k) frame.points.position[n][k] = foam.position[k][order[n]];
-        frame.points.radius[n] = Shape<D>::radius(foam.size[order[n]]);
+    frame.points.position = order.column([&](std::size_t i) {
+        Vec3 x;
+        for (std::size_t k = 0; k < D; ++k) x[k] = foam.position[k][i];
+        return x;
     });
+    frame.points.radius = order.column([&](std::size_t i) { return Shape<D>::radius(foam.size[i]); });
 
     auto& fields = frame.points.fields;
     const auto add = [&](const char* name, int components, auto&& value) -> sim::Field& {
@@ -139,9 +141,12 @@ std::vector<sim::Scalar> BubbleSolver<D>::characteristic_numbers() const {
         list.push_back({"relaxation_per_coarsening", "-", relaxation * m.scaled_time_rate(),
                         "keep well below 1: the foam must relax faster than it coarsens"});
     }
-    const double per_bubble = D == 2 ? 260.0 : 360.0;
-    const double lists = D == 2 ? 30.0 : 60.0;
-    list.push_back({"memory", "MB", count * (per_bubble + lists) * 1e-6, "state and neighbor lists"});
+    const ProcessPlan plan = plan_processes<D>(options_);
+    list.push_back({"memory", "MB", count * plan.bytes_per_bubble * 1e-6, "state and neighbor lists"});
+    list.push_back({"processes", "-", plan.processes,
+                    "as many as work at 80 % of one process's speed each, by a model (docs/clusters.md)"});
+    list.push_back({"memory_per_process", "MB", plan.memory * 1e-6, "of that many, copies of others' bubbles included"});
+    list.push_back({"halo_share", "-", plan.halo_share, "copies of others' bubbles per bubble of a process, at the start"});
     return list;
 }
 

@@ -51,6 +51,8 @@ enum class Stiffness { kSkip, kBound };
 /// The bound on the relaxation rate: the pushes are -grad of a potential whose Hessian is at most
 /// sum_contacts (F_0/(mu_0 S)) n n^T, so its largest eigenvalue is at most 2 max_i lambda_max(sum_j n n^T/S) F_0/mu_0;
 /// exact for a triangular lattice. Exchange of gas adds at most 2 K (1 + kappa) / R_min^2.
+///
+/// @param domain  refreshes the copies in `stage`: what was begun is ended here, behind the bubbles that need no copies
 template <int D>
 Evaluation contact_pass(const Model& model,
                         const spatial::PeriodicBox<D>& box,

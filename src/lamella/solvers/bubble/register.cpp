@@ -8,6 +8,7 @@ void register_bubble(sim::SolverRegistry& registry) {
                   .summary = "wet foam of discs or balls with gas exchange [Lankinen20]",
                   .time_unit = "-",
                   .cuda = true,
+                  .processes = true,
                   .create = [](const sim::SolverInput& input) -> std::unique_ptr<sim::Solver> {
                       const auto options = sim::read_options<Options>(input.options);
                       if (options.dimension == 2) return std::make_unique<BubbleSolver<2>>(options, input);

@@ -87,7 +87,7 @@ public:
         const bool walls = std::any_of(system_.foam.box.periodic.begin(), system_.foam.box.periodic.end(),
                                        [](bool periodic) { return !periodic; });
         if (!walls && census.total_energy / live < 1e-16 * unit) return 0.0;
-        const double mean_force = exact_sum(system_.foam.slots, [&](std::size_t i) {
+        const double mean_force = system_.domain().exact_sum(system_.foam.slots, [&](std::size_t i) {
                                       return std::sqrt(component_product<D>(system_.rates.velocity,
                                                                             system_.rates.velocity, i));
                                   }) *
@@ -107,11 +107,12 @@ private:
 
     /// The three sums in two passes: one for their scales, one to add.
     Products multiply(const Columns<D>& force) const {
+        const Domain& domain = system_.domain();
         const std::size_t count = system_.foam.slots;
         const auto largest = [](Products a, const Products& b) {
             return Products{0.0, std::max(a.forces, b.forces), std::max(a.velocities, b.velocities)};
         };
-        const Products scale = parallel_reduce(
+        const Products most_here = parallel_reduce(
             count, Products{},
             [&](std::size_t begin, std::size_t end) {
                 Products most;
@@ -121,11 +122,15 @@ private:
                 return most;
             },
             largest);
+        double most_anywhere[] = {most_here.forces, most_here.velocities};
+        domain.largest(most_anywhere);
+        const Products scale{0.0, most_anywhere[0], most_anywhere[1]};
         struct Sums {
             FixedSum power, forces, velocities;
         };
-        const Sums none{FixedSum(kMostTerms * std::sqrt(scale.forces * scale.velocities)),
-                        FixedSum(kMostTerms * scale.forces), FixedSum(kMostTerms * scale.velocities)};
+        const double most = domain.most_terms();
+        const Sums none{FixedSum(most * std::sqrt(scale.forces * scale.velocities)),
+                        FixedSum(most * scale.forces), FixedSum(most * scale.velocities)};
         const Sums sums = parallel_reduce(
             count, none,
             [&](std::size_t begin, std::size_t end) {
@@ -143,7 +148,9 @@ private:
                 a.velocities += b.velocities;
                 return a;
             });
-        return {sums.power.value(), sums.forces.value(), sums.velocities.value()};
+        FixedSum all[] = {sums.power, sums.forces, sums.velocities};
+        domain.sum(all);
+        return {all[0].value(), all[1].value(), all[2].value()};
     }
 
     void evaluate(Stiffness stiffness) {
@@ -172,7 +179,7 @@ Relaxation relax(System<D>& system, const Options& options, const sim::StartCont
     double first = 0.0;
     for (;; ++result.iterations) {
         if (result.iterations % kCheckInterval == 0) {
-            if (context.stop_requested()) throw Interrupted();
+            if (system.domain().largest(context.stop_requested() ? 1.0 : 0.0) > 0.0) throw Interrupted();
             result.residual = fire.residual();
             result.at_rest = result.residual < options.start.force_tolerance;
             first = std::max(first, result.residual);

@@ -44,7 +44,7 @@ public:
         rates_current_ = state.rates_current;
     }
 
-    void save(sim::StateWriter& out, const std::vector<std::uint32_t>&) const override {
+    void save(sim::StateWriter& out, const IdOrder<D>&) const override {
         out.write_value("integrator/next_step", next_step_);
         out.write_value("integrator/stiffness", stiffness_);
         out.write_value("integrator/rates_current", std::int64_t{rates_current_});

@@ -1,4 +1,5 @@
-// Saving and loading a bubble foam: live bubbles by id, so that a checkpoint does not depend on how they were stored.
+// Saving and loading a bubble foam: live bubbles by id, so that a checkpoint depends neither on how they were
+// stored nor on who owned them.
 
 #include <cmath>
 
@@ -8,27 +9,16 @@
 #include "lamella/solvers/bubble/bubble_solver.h"
 
 namespace lamella::bubble {
-namespace {
-
-template <class C>
-auto in_order(const C& column, const std::vector<std::uint32_t>& order) {
-    std::vector<typename C::value_type> sorted(order.size());
-    for (std::size_t n = 0; n < order.size(); ++n) sorted[n] = column[order[n]];
-    return sorted;
-}
-
-}  // namespace
-
 template <int D>
 void BubbleSolver<D>::save(sim::StateWriter& out) const {
     observe();
-    const auto order = id_order();
+    const IdOrder<D> order = id_order();
     const Model& m = system_->model;
     out.write_value("dimension", std::int64_t{D});
-    out.write_value("bubbles", static_cast<std::int64_t>(order.size()));
+    out.write_value("bubbles", order.part().total);
     Foam<D>::for_each_column(system_->foam, [&](const std::string& name, const auto& column) {
-        const auto sorted = in_order(column, order);
-        out.write("foam/" + name, std::span(sorted));
+        const auto sorted = order.column([&](std::size_t i) { return column[i]; });
+        out.write_part("foam/" + name, std::span(sorted), order.part());
     });
     for (std::size_t k = 0; k < D; ++k) out.write_value(fmt::format("box/length_{}", k), system_->foam.box.lengths[k]);
     out.write_value("model/initial_mean_radius", m.initial_mean_radius);
@@ -49,17 +39,19 @@ void BubbleSolver<D>::load(sim::StateReader& in) {
     if (in.read_integer("dimension") != D) refuse("its foam has another dimension");
     const std::int64_t count = in.read_integer("bubbles");
     const std::int64_t start_count = in.read_integer("start_count");
-    if (count < 1 || count > start_count || start_count > std::int64_t{4'000'000'000}) refuse("its bubble counts are impossible");
+    if (count < 1 || count > start_count || start_count > (std::int64_t{1} << 50)) refuse("its bubble counts are impossible");
 
     Foam<D>& foam = system_->foam;
-    const auto n = static_cast<std::size_t>(count);
     // The first column is read before room is made for all: a wrong count is found while little memory is taken.
     std::vector<double> sizes;
-    in.read("foam/size", n, sizes);
+    in.read_part("foam/size", static_cast<std::size_t>(count), sizes);
+    const std::size_t n = sizes.size();
     foam.resize(n);
+    foam.live = static_cast<std::size_t>(count);
+    domain_.expect_items(static_cast<double>(start_count));
     Foam<D>::for_each_column(foam, [&](const std::string& name, auto& column) {
         std::vector<typename std::decay_t<decltype(column)>::value_type> values;
-        in.read("foam/" + name, n, values);
+        in.read_part("foam/" + name, static_cast<std::size_t>(count), values);
         std::copy(values.begin(), values.end(), column.begin());
     });
     Model& m = system_->model;
@@ -68,11 +60,14 @@ void BubbleSolver<D>::load(sim::StateReader& in) {
         foam.box.periodic[k] = !options_.walls[k];
         if (!(foam.box.lengths[k] > 0.0) || !std::isfinite(foam.box.lengths[k])) refuse("its box is not a box");
     }
+    std::int64_t bad = 0;
     for (std::size_t i = 0; i < n; ++i) {
-        bool good = std::isfinite(foam.size[i]) && foam.size[i] > 0.0;
+        bool good = std::isfinite(foam.size[i]) && foam.size[i] > 0.0 && foam.id[i] >= 0 && foam.id[i] < start_count;
         for (std::size_t k = 0; k < D; ++k) good = good && std::abs(foam.position[k][i]) <= 1e3 * foam.box.lengths[k];
-        if (!good) refuse(fmt::format("bubble {} has an impossible position or size", i));
+        bad += good ? 0 : 1;
     }
+    bad = domain_.sum(bad);
+    if (bad > 0) refuse(fmt::format("{} bubbles have an impossible position, size or id", bad));
     m.initial_mean_radius = in.read_double("model/initial_mean_radius");
     m.initial_mean_surface = in.read_double("model/initial_mean_surface");
     clock_.time = in.read_double("time");
@@ -88,6 +83,7 @@ void BubbleSolver<D>::load(sim::StateReader& in) {
     integrator_->load(in, *system_);
     system_->prepare(LiquidMotion::kAsGiven);
     system_->rebuild();
+    look_for_the_largest();
     take_to_device();
 }
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "lamella/core/parallel.h"
+#include "lamella/dist/migration.h"
 
 namespace lamella::bubble {
 
@@ -24,22 +27,88 @@ void System<D>::prepare(LiquidMotion motion) {
 
 template <int D>
 double System<D>::mean_radius() const {
-    const double sum = exact_sum(foam.slots, [&](std::size_t i) { return Shape<D>::radius(foam.size[i]); });
+    const double sum = domain_->exact_sum(foam.slots, [&](std::size_t i) { return Shape<D>::radius(foam.size[i]); });
     return sum / static_cast<double>(std::max<std::size_t>(foam.live, 1));
 }
 
 template <int D>
 double System<D>::total_size() const {
-    return exact_sum(foam.slots, [&](std::size_t i) { return foam.size[i]; });
+    return domain_->exact_sum(foam.slots, [&](std::size_t i) { return foam.size[i]; });
+}
+
+template <int D>
+std::vector<Column*> System<D>::attached_in_use() const {
+    std::vector<Column*> columns = attached;
+    std::erase_if(columns, [](const Column* column) { return column->empty(); });
+    return columns;
+}
+
+template <int D>
+void System<D>::distribute() {
+    if (!domain_->several()) return;
+    dist::Communicator& processes = domain_->processes();
+    const std::vector<std::uint32_t> kept = live_slots();
+    const std::vector<Column*> in_use = attached_in_use();
+    const auto for_each = [&](auto&& visit) {
+        Foam<D>::for_each_column(foam, [&](const std::string&, auto& column) { visit(column); });
+        for (Column* column : in_use) visit(*column);
+    };
+    for_each([&](auto& column) { reorder(column, kept, kept.size()); });
+    foam.slots = kept.size();
+
+    if (!partition_ || unbalanced_ || !(partitioned_lengths_ == foam.box.lengths)) {
+        partition_.emplace(processes, foam.box, pointers<D>(foam.position), foam.slots, processes.size());
+        partitioned_lengths_ = foam.box.lengths;
+    }
+    std::vector<int> owner(foam.slots);
+    parallel_for(foam.slots, [&](std::size_t i) { owner[i] = partition_->owner(place(i)); });
+    const dist::Migration migration(processes, owner);
+    for_each([&](auto& column) { migration(column); });
+    foam.slots = migration.count();
+    const std::size_t length = spatial::padded(foam.slots);
+    for_each([&](auto& column) { column.resize(length); });
+
+    constexpr double kWorthANewPartition = 1.05;
+    const double most = domain_->largest(static_cast<double>(foam.slots));
+    unbalanced_ = most * processes.size() > kWorthANewPartition * static_cast<double>(foam.live);
+}
+
+template <int D>
+Vec<D> System<D>::place(std::size_t i) const {
+    Vec<D> x;
+    for (std::size_t k = 0; k < D; ++k) x[k] = foam.position[k][i];
+    return x;
+}
+
+template <int D>
+std::vector<std::uint32_t> System<D>::live_slots() const {
+    std::vector<std::uint32_t> slots;
+    slots.reserve(foam.slots);
+    for (std::size_t i = 0; i < foam.slots; ++i)
+        if (foam.alive(i)) slots.push_back(static_cast<std::uint32_t>(i));
+    return slots;
+}
+
+/// The other processes that own a place which a bubble may touch until the next rebuild get a copy of it.
+template <int D>
+dist::Halo System<D>::find_copies(const std::vector<std::uint32_t>& kept, double largest_radius) const {
+    if (!domain_->several()) return {};
+    dist::Communicator& processes = domain_->processes();
+    std::vector<std::vector<std::uint32_t>> wanted(static_cast<std::size_t>(processes.size()));
+    for (std::uint32_t n = 0; n < kept.size(); ++n) {
+        const double reach = Shape<D>::radius(foam.size[kept[n]]) + largest_radius + skin_;
+        partition_->for_each_near(place(kept[n]), reach, [&](int rank) {
+            if (rank != processes.rank()) wanted[static_cast<std::size_t>(rank)].push_back(n);
+        });
+    }
+    return {processes, std::move(wanted)};
 }
 
 template <int D>
 void System<D>::rebuild(double least_reach) {
+    distribute();
     // Drop the vanished first: the search then sees live bubbles only.
-    std::vector<std::uint32_t> kept;
-    kept.reserve(foam.live);
-    for (std::size_t i = 0; i < foam.slots; ++i)
-        if (foam.alive(i)) kept.push_back(static_cast<std::uint32_t>(i));
+    const std::vector<std::uint32_t> kept = live_slots();
     Columns<D> position = foam.position;
     Column radius(kept.size());
     std::vector<std::int64_t> id(kept.size());
@@ -50,21 +119,45 @@ void System<D>::rebuild(double least_reach) {
     });
 
     skin_ = std::max(options_.integrator.skin * mean_radius(), 2.0 * least_reach);
-    auto search = spatial::find_neighbors<D>(foam.box, pointers<D>(position), radius.data(), id.data(), kept.size(), skin_);
+    const double largest = domain_->largest(parallel_max(kept.size(), 0.0, [&](std::size_t i) { return radius[i]; }));
+    dist::Halo halo = find_copies(kept, largest);
+    const auto append = [&](auto& column) {
+        const auto copies = halo.fetch(std::span(std::as_const(column)));
+        column.insert(column.end(), copies.begin(), copies.end());
+    };
+    for (auto& column : position) append(column);
+    append(radius);
+    append(id);
+    auto search = spatial::find_neighbors<D>(foam.box, pointers<D>(position), radius.data(), id.data(), radius.size(),
+                                             skin_, {.count = halo.copies(), .largest_radius = largest});
     neighbors_ = std::move(search.list);
-    parallel_for(kept.size(), [&](std::size_t i) { search.order[i] = kept[search.order[i]]; });
-
     const std::size_t length = spatial::padded(kept.size());
+    std::vector<std::uint32_t> place(kept.size());
+    parallel_for(kept.size(), [&](std::size_t i) {
+        place[search.order[i]] = static_cast<std::uint32_t>(i);
+        search.order[i] = kept[search.order[i]];
+    });
+    halo.renumber(place, length);
+    domain_->set_halo(std::move(halo));
+
     Foam<D>::for_each_column(foam, [&](const std::string&, auto& column) { reorder(column, search.order, length); });
-    for (Column* column : attached)
-        if (!column->empty()) reorder(*column, search.order, length);
-    foam.slots = foam.live = kept.size();
+    for (Column* column : attached_in_use()) reorder(*column, search.order, length);
+    foam.slots = kept.size();
+    foam.live = static_cast<std::size_t>(domain_->sum(static_cast<std::int64_t>(kept.size())));
     stage.resize(length);
     rates.resize(length);
     stage_current();
     built_position_ = stage.position;
     built_radius_ = stage.radius;
     ++rebuilds_;
+}
+
+template <int D>
+void System<D>::refresh_copies() {
+    std::array<Column*, D + 1> columns;
+    for (std::size_t k = 0; k < D; ++k) columns[k] = &foam.position[k];
+    columns[D] = &foam.size;
+    domain_->refresh(columns);
 }
 
 template <int D>
@@ -92,10 +185,11 @@ void System<D>::stage_current() {
 
 template <int D>
 Evaluation System<D>::evaluate(Gas gas, Stiffness stiffness) {
-    for (auto& column : stage.position) {
-        Column* const one[] = {&column};
-        domain_->halo(one);
-    }
+    std::vector<Column*> read_by_neighbors;
+    for (auto& column : stage.position) read_by_neighbors.push_back(&column);
+    read_by_neighbors.push_back(&stage.radius);
+    if (gas == Gas::kOn && model.exchanges_gas()) read_by_neighbors.push_back(&stage.inverse_radius);
+    domain_->begin_refresh(read_by_neighbors);
     Evaluation evaluation =
         contact_pass<D>(model, foam.box, neighbors_, stage, gas, stiffness, *domain_, foam.live, rates);
     const double walls = liquid_.apply(neighbors_, stage, foam.velocity, *domain_, rates);

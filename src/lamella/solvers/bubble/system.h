@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "lamella/dist/partition.h"
 #include "lamella/solvers/bubble/domain.h"
 #include "lamella/solvers/bubble/foam.h"
 #include "lamella/solvers/bubble/increment.h"
@@ -42,7 +44,10 @@ public:
     /// Takes the box, its walls, and the liquid's motion for the evaluations to come. Call after changing the box.
     void prepare(LiquidMotion motion);
 
-    /// Drops vanished bubbles and builds new neighbor lists for the current state. The lists stay valid while no
+    /// Hands every bubble to the process that owns its place, and drops vanished ones; with one process, nothing.
+    void distribute();
+
+    /// Drops vanished bubbles, distributes and builds new neighbor lists for the current state. The lists stay valid while no
     /// bubble's |dx| + dR passes reach(), at least `least_reach`.
     void rebuild(double least_reach = 0.0);
     double reach() const { return 0.5 * skin_; }
@@ -50,6 +55,9 @@ public:
 
     /// Largest |dx| + dR of any bubble between the last rebuild and the current state.
     double expansion() const;
+
+    /// Brings the copies' positions and sizes up to date: what a look at the neighbors of the current state needs.
+    void refresh_copies();
 
     /// stage = the current state.
     void stage_current();
@@ -64,10 +72,18 @@ public:
     double total_size() const;
 
 private:
+    Vec<D> place(std::size_t i) const;
+    std::vector<std::uint32_t> live_slots() const;
+    std::vector<Column*> attached_in_use() const;
+    dist::Halo find_copies(const std::vector<std::uint32_t>& kept, double largest_radius) const;
+
     Options options_;
     Domain* domain_;
     Liquid<D> liquid_;
     spatial::NeighborList<D> neighbors_;
+    std::optional<dist::Partition<D>> partition_;
+    Vec<D> partitioned_lengths_;  // of the box that partition_ cuts
+    bool unbalanced_ = false;     // partition_ has become so
     Columns<D> built_position_;
     Column built_radius_;
     double skin_ = 0.0;

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lamella::dist {
+
+/// Bytes for another process; they must stay as they are until Communicator::end.
+struct Outgoing {
+    int to;
+    std::span<const std::byte> bytes;
+};
+
+/// Room for what another process sends.
+struct Incoming {
+    int from;
+    std::span<std::byte> bytes;
+};
+
+/// The processes that compute one simulation together; "rank" is a process's number among them, from 0.
+///
+/// Everything but rank() and size() is collective: all processes call the same function in the same order. What comes
+/// out of sum() and largest() is the same on all, so that decisions that rest on it are.
+class Communicator {
+public:
+    virtual ~Communicator() = default;
+    virtual int rank() const = 0;
+    virtual int size() const = 0;
+    bool several() const { return size() > 1; }
+
+    /// Each value becomes its sum over all processes.
+    virtual void sum(std::span<std::int64_t> values) = 0;
+    /// Each value becomes the largest over all processes; one that is not a number counts as infinite.
+    virtual void largest(std::span<double> values) = 0;
+    /// The bytes of process 0 reach all.
+    virtual void broadcast(std::span<std::byte> bytes) = 0;
+    /// Tells each process one number. @param to_each  one per process   @returns  what each process told this one
+    virtual std::vector<std::int64_t> exchange(std::span<const std::int64_t> to_each) = 0;
+
+    /// Messages to and from some of the others; at most one per pair of processes, whose ends agree on its length.
+    /// What comes in is there after end(), and work can be done in between. Not for messages to oneself.
+    virtual void begin(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) = 0;
+    virtual void end() = 0;
+
+    /// Ends the other processes, and maybe this one: it met an error that they do not know of. Not collective.
+    virtual void abort(int exit_code) = 0;
+};
+
+/// One process on its own.
+class Alone final : public Communicator {
+public:
+    int rank() const override { return 0; }
+    int size() const override { return 1; }
+    void sum(std::span<std::int64_t>) override {}
+    void largest(std::span<double>) override {}
+    void broadcast(std::span<std::byte>) override {}
+    std::vector<std::int64_t> exchange(std::span<const std::int64_t> to_each) override {
+        return {to_each.begin(), to_each.end()};
+    }
+    void begin(std::span<const Outgoing>, std::span<const Incoming>) override {}
+    void end() override {}
+    void abort(int) override {}
+};
+
+}  // namespace lamella::dist

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "lamella/core/aligned.h"
+#include "lamella/dist/communicator.h"
+
+#include <cstdint>
+#include <utility>
+
+namespace lamella::dist {
+
+/// Copies of other processes' items that are near this one's, and how they are kept up to date.
+class Halo {
+public:
+    /// No copies.
+    Halo() = default;
+    /// @param wanted  for each rank the items here that it gets copies of, in the order in which it will see them
+    Halo(Communicator& processes, std::vector<std::vector<std::uint32_t>> wanted);
+
+    /// Copies here. Those of one rank are neighbors, ranks in order.
+    std::size_t copies() const { return copies_; }
+    /// Copies of this process's items elsewhere.
+    std::size_t copied() const { return copied_; }
+
+    /// The copies' entries of a column of the items here.
+    template <class T>
+    std::vector<T> fetch(std::span<const T> column) {
+        std::vector<T> sent(copied_);
+        std::size_t at = 0;
+        for (const Group& group : outgoing_)
+            for (const std::uint32_t i : group.items) sent[at++] = column[i];
+        std::vector<T> received(copies_);
+        begin_messages(std::as_bytes(std::span(sent)), std::as_writable_bytes(std::span(received)), sizeof(T));
+        if (processes_ != nullptr) processes_->end();
+        return received;
+    }
+
+    /// The items were stored anew: item i stands at place[i] now, and the copies follow from `first_copy` on.
+    void renumber(std::span<const std::uint32_t> place, std::size_t first_copy);
+
+    /// Sends the columns' entries to where they are copied; until end() the columns must live, and their copies (made
+    /// room for where they are missing) must not be read.
+    void begin(std::span<Column* const> columns);
+    void end();
+
+private:
+    struct Group {
+        int rank;
+        std::vector<std::uint32_t> items;
+    };
+    struct Arrival {
+        int rank;
+        std::size_t items;
+    };
+    void begin_messages(std::span<const std::byte> sent, std::span<std::byte> received, std::size_t item_bytes);
+
+    Communicator* processes_ = nullptr;
+    std::vector<Group> outgoing_;
+    std::vector<Arrival> incoming_;
+    std::size_t copies_ = 0;
+    std::size_t copied_ = 0;
+    std::size_t first_copy_ = 0;
+
+    std::vector<Column*> columns_;  ///< between begin() and end()
+    std::vector<double> sent_, received_;
+};
+
+}  // namespace lamella::dist

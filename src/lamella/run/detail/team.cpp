@@ -1,0 +1,241 @@
+#include "lamella/run/detail/team.h"
+
+#include "lamella/core/error.h"
+#include "lamella/dist/agree.h"
+#include "lamella/dist/gather.h"
+
+#include <utility>
+
+namespace lamella::run {
+namespace {
+
+using dist::Communicator;
+using Processes = std::shared_ptr<Communicator>;
+
+enum class Task : std::int64_t { kLeave, kCreate, kStart, kAdvance, kFrame, kScalars, kMarkFrame, kSave, kLoad };
+
+/// What process 0 tells the others to do.
+struct Order {
+    Task task = Task::kLeave;
+    double time_limit = 0.0;
+};
+
+Order give(Communicator& processes, Order order) {
+    processes.broadcast(std::as_writable_bytes(std::span(&order, 1)));
+    return order;
+}
+
+/// Does what all processes do at once. The errors of core/error.h come from decisions that all make alike, so that all
+/// have them; any other error is this process's own, and the rest would wait for it for ever.
+template <class Work>
+auto in_step(Communicator& processes, Work&& work) {
+    try {
+        return work();
+    } catch (const InputError&) {
+        throw;
+    } catch (const IoError&) {
+        throw;
+    } catch (const NumericalError&) {
+        throw;
+    } catch (const Interrupted&) {
+        throw;
+    } catch (...) {
+        constexpr int kFailed = 3;
+        processes.abort(kFailed);
+        throw;
+    }
+}
+
+/// Joins the columns that the processes hold parts of, on process 0. There `out` is the file, elsewhere it is empty.
+class JoiningWriter final : public sim::StateWriter {
+public:
+    JoiningWriter(Communicator& processes, sim::StateWriter* out) : processes_(processes), out_(out) {}
+    void write(std::string_view name, std::span<const double> v) override { put(name, v); }
+    void write(std::string_view name, std::span<const std::int64_t> v) override { put(name, v); }
+    void write(std::string_view name, std::span<const std::int32_t> v) override { put(name, v); }
+    void write_part(std::string_view name, std::span<const double> v, sim::Part) override { join(name, v); }
+    void write_part(std::string_view name, std::span<const std::int64_t> v, sim::Part) override { join(name, v); }
+    void write_part(std::string_view name, std::span<const std::int32_t> v, sim::Part) override { join(name, v); }
+
+private:
+    template <class T>
+    void put(std::string_view name, std::span<const T> values) {
+        dist::together(processes_, [&] {
+            if (out_ != nullptr) out_->write(name, values);
+        });
+    }
+    template <class T>
+    void join(std::string_view name, std::span<const T> values) {
+        const std::vector<T> all = dist::gather(processes_, values);
+        put(name, std::span<const T>(all));
+    }
+
+    Communicator& processes_;
+    sim::StateWriter* out_;
+};
+
+/// Shares out what process 0 reads. There `in` is the file, elsewhere it is empty.
+class SharingReader final : public sim::StateReader {
+public:
+    SharingReader(Communicator& processes, sim::StateReader* in) : processes_(processes), in_(in) {}
+    void read(std::string_view name, std::size_t n, std::vector<double>& v) override { copy(name, n, v); }
+    void read(std::string_view name, std::size_t n, std::vector<std::int64_t>& v) override { copy(name, n, v); }
+    void read(std::string_view name, std::size_t n, std::vector<std::int32_t>& v) override { copy(name, n, v); }
+    void read_part(std::string_view name, std::size_t n, std::vector<double>& v) override { share(name, n, v); }
+    void read_part(std::string_view name, std::size_t n, std::vector<std::int64_t>& v) override { share(name, n, v); }
+    void read_part(std::string_view name, std::size_t n, std::vector<std::int32_t>& v) override { share(name, n, v); }
+
+private:
+    template <class T>
+    void fetch(std::string_view name, std::size_t count, std::vector<T>& values) {
+        dist::together(processes_, [&] {
+            if (in_ != nullptr) in_->read(name, count, values);
+        });
+    }
+    template <class T>
+    void copy(std::string_view name, std::size_t count, std::vector<T>& values) {
+        fetch(name, count, values);
+        values.resize(count);
+        processes_.broadcast(std::as_writable_bytes(std::span(values)));
+    }
+    template <class T>
+    void share(std::string_view name, std::size_t count, std::vector<T>& values) {
+        fetch(name, count, values);
+        values = dist::scatter(processes_, std::span<const T>(values), static_cast<std::int64_t>(count));
+    }
+
+    Communicator& processes_;
+    sim::StateReader* in_;
+};
+
+/// The frame of the whole on process 0, from each process's share.
+sim::Frame joined(Communicator& processes, sim::Frame share) {
+    share.points.position = dist::gather(processes, std::span<const Vec3>(share.points.position));
+    share.points.radius = dist::gather(processes, std::span<const double>(share.points.radius));
+    for (sim::Field& field : share.points.fields)
+        field.values = dist::gather(processes, std::span<const double>(field.values));
+    return share;
+}
+
+/// Process 0's solver, which has all the others do the same.
+class TeamSolver final : public sim::Solver {
+public:
+    TeamSolver(Processes processes, std::unique_ptr<sim::Solver> own)
+        : processes_(std::move(processes)), own_(std::move(own)) {}
+
+    void start(const sim::StartContext& context) override {
+        all({Task::kStart}, [&] { own_->start(context); });
+    }
+    sim::StepReport advance(double time_limit) override {
+        return all({Task::kAdvance, time_limit}, [&] { return own_->advance(time_limit); });
+    }
+    double time() const override { return own_->time(); }
+    std::string time_unit() const override { return own_->time_unit(); }
+    std::int64_t step() const override { return own_->step(); }
+    std::optional<std::string> stop_reason() const override { return own_->stop_reason(); }
+    std::optional<double> progress() const override { return own_->progress(); }
+    double slow_motion() const override { return own_->slow_motion(); }
+    sim::Frame frame() const override {
+        return all({Task::kFrame}, [&] { return joined(*processes_, own_->frame()); });
+    }
+    void mark_frame() override {
+        all({Task::kMarkFrame}, [&] { own_->mark_frame(); });
+    }
+    std::vector<sim::Scalar> scalars() const override {
+        return all({Task::kScalars}, [&] { return own_->scalars(); });
+    }
+    std::vector<sim::Event> take_events() override { return own_->take_events(); }
+    std::vector<sim::Scalar> characteristic_numbers() const override { return own_->characteristic_numbers(); }
+    void save(sim::StateWriter& out) const override {
+        all({Task::kSave}, [&] {
+            JoiningWriter writer(*processes_, &out);
+            own_->save(writer);
+        });
+    }
+    void load(sim::StateReader& in) override {
+        all({Task::kLoad}, [&] {
+            SharingReader reader(*processes_, &in);
+            own_->load(reader);
+        });
+    }
+
+private:
+    template <class Work>
+    auto all(Order order, Work&& work) const -> decltype(work()) {
+        give(*processes_, order);
+        return in_step(*processes_, work);
+    }
+
+    Processes processes_;
+    std::unique_ptr<sim::Solver> own_;
+};
+
+void obey(Communicator& processes, const Order& order, sim::Solver& solver) {
+    switch (order.task) {
+        case Task::kStart:
+            solver.start({});
+            break;
+        case Task::kAdvance:
+            solver.advance(order.time_limit);
+            solver.take_events();  // process 0 has them
+            break;
+        case Task::kFrame:
+            joined(processes, solver.frame());
+            break;
+        case Task::kScalars:
+            solver.scalars();
+            break;
+        case Task::kMarkFrame:
+            solver.mark_frame();
+            break;
+        case Task::kSave: {
+            JoiningWriter writer(processes, nullptr);
+            solver.save(writer);
+            break;
+        }
+        case Task::kLoad: {
+            SharingReader reader(processes, nullptr);
+            solver.load(reader);
+            break;
+        }
+        case Task::kLeave:
+        case Task::kCreate:
+            break;
+    }
+}
+
+}  // namespace
+
+Team::Team(Processes processes) : processes_(std::move(processes)) {
+    if (processes_ && !processes_->several()) processes_.reset();
+}
+
+Team::~Team() {
+    if (processes_) give(*processes_, {Task::kLeave});
+}
+
+std::unique_ptr<sim::Solver> Team::create(const MakeSolver& make) {
+    if (!processes_) return make(nullptr);
+    give(*processes_, {Task::kCreate});
+    return std::make_unique<TeamSolver>(processes_, dist::together(*processes_, [&] { return make(processes_); }));
+}
+
+void follow(const Processes& processes, const MakeSolver& make) {
+    std::unique_ptr<sim::Solver> solver;
+    while (true) {
+        const Order order = give(*processes, {});
+        if (order.task == Task::kLeave) return;
+        try {
+            if (order.task == Task::kCreate) {
+                solver.reset();
+                solver = dist::together(*processes, [&] { return make(processes); });
+            } else {
+                in_step(*processes, [&] { obey(*processes, order, *solver); });
+            }
+        } catch (const std::exception&) {
+            // Process 0 has the same error and decides what follows from it: a checkpoint, or the end.
+        }
+    }
+}
+
+}  // namespace lamella::run

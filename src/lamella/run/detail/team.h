@@ -1,0 +1,35 @@
+#pragma once
+
+#include "lamella/dist/communicator.h"
+#include "lamella/sim/solver.h"
+
+#include <functional>
+#include <memory>
+
+namespace lamella::run {
+
+using MakeSolver = std::function<std::unique_ptr<sim::Solver>(const std::shared_ptr<dist::Communicator>&)>;
+
+/// Process 0's end of the line to the others: what it does with its solver, all do. It alone decides what is next,
+/// reads the clock, hears signals and writes files; the others follow.
+class Team {
+public:
+    /// @param processes  empty: this process is alone
+    explicit Team(std::shared_ptr<dist::Communicator> processes);
+    ~Team();  ///< lets the others go
+    Team(const Team&) = delete;
+    Team& operator=(const Team&) = delete;
+
+    /// A solver on every process, which make() creates; the one returned calls them all.
+    /// @throws  what make() throws on any of them
+    std::unique_ptr<sim::Solver> create(const MakeSolver& make);
+
+private:
+    std::shared_ptr<dist::Communicator> processes_;
+};
+
+/// What every other process does: follows process 0 until that lets it go. @throws  errors that no other process knows
+/// of
+void follow(const std::shared_ptr<dist::Communicator>& processes, const MakeSolver& make);
+
+}  // namespace lamella::run

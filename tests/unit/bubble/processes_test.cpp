@@ -1,0 +1,98 @@
+// One foam on several processes has the bits of the foam on one, in short; processes_full_test.cpp has it at length.
+
+#include "processes.h"
+
+namespace lamella::bubble {
+namespace {
+
+using namespace test;
+
+/// Bubbles vanish from the first steps on.
+Options quick(int dimension) {
+    Options o = coarsening(dimension, 200, dimension == 2 ? 0.92 : 0.75);
+    o.gas.exchange_rate = 0.2;
+    o.start.max_iterations = 20;
+    return o;
+}
+
+TEST(Processes, GiveTheSameBitsIn2D) { expect_same_on<2>({2, 3}, quick(2), 40); }
+
+TEST(Processes, GiveTheSameBitsIn3D) {
+    Options o = quick(3);
+    o.walls = {false, true, false};
+    o.drag = Drag::kPairwise;
+    o.gas.exchange_rate = 1.0;
+    expect_same_on<3>({4}, o, 40);
+}
+
+TEST(Processes, ContinueEachOthersStates) {
+    ThreadLimit one(1);
+    Options o = quick(2);
+    o.integrator.method = Method::kAbm2;
+    Outcome half;
+    Outcome whole;
+    as_processes(2, [&](const Processes& all) {
+        auto solver = make_share<2>(o, all);
+        solver->start({});
+        for (int step = 0; step < 20; ++step) solver->advance(1e9);
+        look(*solver, *all, half);
+        for (int step = 0; step < 20; ++step) solver->advance(1e9);
+        look(*solver, *all, whole);
+    });
+    for (const int processes : {1, 3}) {
+        Outcome resumed;
+        as_processes(processes, [&](const Processes& all) {
+            auto solver = make_share<2>(o, all);
+            SharedMemory memory(*all, half.state);
+            solver->load(memory);
+            for (int step = 0; step < 20; ++step) solver->advance(1e9);
+            look(*solver, *all, resumed);
+        });
+        EXPECT_EQ(resumed.state, whole.state) << processes << " processes";
+    }
+}
+
+TEST(Processes, RefuseAStateTogether) {
+    Outcome half;
+    as_processes(2, [&](const Processes& all) {
+        auto solver = make_share<2>(quick(2), all);
+        solver->start({});
+        look(*solver, *all, half);
+    });
+    std::get<std::vector<double>>(half.state.entries["foam/position_x"])[7] = std::nan("");
+    as_processes(3, [&](const Processes& all) {
+        auto solver = make_share<2>(quick(2), all);
+        SharedMemory memory(*all, half.state);
+        EXPECT_THROW(solver->load(memory), InputError);
+    });
+}
+
+TEST(Processes, CarryIdsBeyond32Bits) {
+    ThreadLimit one(1);
+    const Options o = quick(2);
+    Outcome start;
+    as_processes(1, [&](const Processes& all) {
+        auto solver = make_share<2>(o, all);
+        solver->start({});
+        look(*solver, *all, start);
+    });
+    constexpr std::int64_t kFar = std::int64_t{1} << 40;
+    auto& ids = std::get<std::vector<std::int64_t>>(start.state.entries["foam/id"]);
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        ids[i] = kFar / static_cast<std::int64_t>(ids.size()) * static_cast<std::int64_t>(i);
+    start.state.entries["start_count"] = std::vector<std::int64_t>{kFar};
+    std::vector<Outcome> after(2);
+    for (const int processes : {1, 3})
+        as_processes(processes, [&](const Processes& all) {
+            auto solver = make_share<2>(o, all);
+            SharedMemory memory(*all, start.state);
+            solver->load(memory);
+            for (int step = 0; step < 20; ++step) solver->advance(1e9);
+            look(*solver, *all, after[processes == 1 ? 0 : 1]);
+        });
+    EXPECT_EQ(after[0].state, after[1].state);
+    EXPECT_GT(std::get<std::vector<std::int64_t>>(after[0].state.entries["foam/id"]).back(), kFar / 2);
+}
+
+}  // namespace
+}  // namespace lamella::bubble

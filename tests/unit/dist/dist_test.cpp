@@ -1,0 +1,160 @@
+// Sums, messages and agreement between processes; processes are threads here, and MPI's in app.clusters.
+
+#include "lamella/core/error.h"
+#include "lamella/core/random.h"
+#include "lamella/dist/agree.h"
+#include "lamella/dist/gather.h"
+#include "lamella/dist/halo.h"
+#include "lamella/dist/migration.h"
+#include "lamella/dist/sum.h"
+
+#include <gtest/gtest.h>
+
+#include "process_team.h"
+
+namespace lamella::dist {
+namespace {
+
+using test::as_processes;
+
+double noise(std::uint64_t i) { return uniform01(random_bits(5, RandomStream::kBubblePosition, 0, i)) - 0.3; }
+
+TEST(Sum, IsTheSameHoweverManyProcessesShareTheTerms) {
+    const std::int64_t total = 10'000;
+    const double alone = lamella::exact_sum(static_cast<std::size_t>(total), [](std::size_t i) { return noise(i); });
+    for (const int size : {1, 2, 3, 8})
+        as_processes(size, [&](const std::shared_ptr<Communicator>& processes) {
+            const Share share = share_of(total, *processes);
+            const double sum =
+                dist::exact_sum(*processes, static_cast<std::size_t>(share.count), 1.0,
+                                [&](std::size_t i) { return noise(static_cast<std::uint64_t>(share.first) + i); });
+            EXPECT_EQ(sum, alone) << size << " processes";
+        });
+}
+
+TEST(Sum, HoldsATrillionTerms) {
+    // 512 blocks of 2^31 terms of 1 - 2^-40: every block has the largest low integer there is. One process cannot add
+    // them one by one, so a block is made by doubling.
+    const double term = 1.0 - 0x1p-40;
+    const double terms = 0x1p40;
+    const auto block = [&] {
+        FixedSum sum(terms);
+        sum.add(term);
+        for (int k = 0; k < 31; ++k) sum += FixedSum(sum);
+        return sum;
+    };
+    FixedSum expected(terms);
+    for (int b = 0; b < 512; ++b) {
+        FixedSum one = block();
+        one.carry();
+        expected += one;
+    }
+    EXPECT_NEAR(expected.value() / (terms * term), 1.0, 1e-15);
+    as_processes(8, [&](const std::shared_ptr<Communicator>& processes) {
+        FixedSum sum[] = {FixedSum(terms)};
+        for (int b = 0; b < 64; ++b) {
+            FixedSum one = block();
+            one.carry();
+            sum[0] += one;
+        }
+        dist::sum(*processes, sum);
+        EXPECT_EQ(sum[0].value(), expected.value());
+    });
+}
+
+TEST(Sum, OfATrillionTermsHasRoomForTheLargest) {
+    Alone alone;
+    // Two terms stand for 10^12 equal ones: the scale leaves room for all of them.
+    const double sum = dist::exact_sum(alone, 2, 1e12, [](std::size_t) { return 3.0; });
+    EXPECT_EQ(sum, 6.0);
+}
+
+TEST(Migration, BringsEveryItemToItsDestinationWithAllItsColumns) {
+    constexpr std::int64_t kFar = std::int64_t{1} << 40;  // ids beyond 32 bits
+    as_processes(5, [&](const std::shared_ptr<Communicator>& processes) {
+        const std::size_t own = processes->rank() == 2 ? 0 : 40 + static_cast<std::size_t>(processes->rank());
+        std::vector<std::int64_t> id;
+        std::vector<double> x;
+        std::vector<std::int32_t> wraps;
+        std::vector<int> destination;
+        for (std::size_t i = 0; i < own; ++i) {
+            id.push_back(kFar + processes->rank() * 1000 + static_cast<std::int64_t>(i));
+            x.push_back(noise(static_cast<std::uint64_t>(id.back())));
+            wraps.push_back(static_cast<std::int32_t>(id.back() % 7));
+            destination.push_back(static_cast<int>(id.back() % 4));  // rank 4 gets none
+        }
+        const Migration migration(*processes, destination);
+        migration(id);
+        migration(x);
+        migration(wraps);
+        EXPECT_EQ(id.size(), migration.count());
+        if (processes->rank() == 4) {
+            EXPECT_TRUE(id.empty());
+        }
+        for (std::size_t n = 0; n < id.size(); ++n) {
+            EXPECT_EQ(id[n] % 4, processes->rank());
+            EXPECT_EQ(x[n], noise(static_cast<std::uint64_t>(id[n])));
+            EXPECT_EQ(wraps[n], id[n] % 7);
+        }
+        EXPECT_EQ(sum(*processes, static_cast<std::int64_t>(id.size())), 40 + 41 + 43 + 44);
+    });
+}
+
+TEST(Halo, KeepsCopiesUpToDateThroughRenumbering) {
+    as_processes(3, [&](const std::shared_ptr<Communicator>& processes) {
+        // Every process has items rank * 10 .. rank * 10 + 4 and copies the even ones to the next process.
+        const int rank = processes->rank();
+        Column value;
+        for (int i = 0; i < 5; ++i) value.push_back(rank * 10 + i);
+        std::vector<std::vector<std::uint32_t>> wanted(3);
+        wanted[static_cast<std::size_t>((rank + 1) % 3)] = {0, 2, 4};
+        Halo halo(*processes, wanted);
+        EXPECT_EQ(halo.copies(), 3U);
+        const auto fetched = halo.fetch(std::span<const double>(value));
+        const double from = (rank + 2) % 3 * 10;
+        EXPECT_EQ(fetched, (std::vector<double>{from, from + 2, from + 4}));
+
+        std::reverse(value.begin(), value.end());
+        halo.renumber(std::vector<std::uint32_t>{4, 3, 2, 1, 0}, 8);
+        Column twice(5);
+        for (std::size_t i = 0; i < 5; ++i) twice[i] = 2.0 * value[i];
+        Column* const columns[] = {&value, &twice};
+        halo.begin(columns);
+        halo.end();
+        EXPECT_EQ(value.size(), 11U);
+        EXPECT_EQ(value[9], from + 2);
+        EXPECT_EQ(twice[10], 2.0 * (from + 4));
+    });
+}
+
+TEST(Gather, IsUndoneByScatter) {
+    as_processes(4, [&](const std::shared_ptr<Communicator>& processes) {
+        const Share share = share_of(10, *processes);
+        std::vector<std::int64_t> own;
+        for (std::int64_t i = 0; i < share.count; ++i) own.push_back(share.first + i);
+        const auto all = gather(*processes, std::span<const std::int64_t>(own));
+        EXPECT_EQ(all.size(), processes->rank() == 0 ? 10U : 0U);
+        for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], static_cast<std::int64_t>(i));
+        EXPECT_EQ(scatter(*processes, std::span<const std::int64_t>(all), 10), own);
+    });
+}
+
+TEST(Together, FailsForAllWhereItFailsForOne) {
+    for (const int culprit : {0, 2})
+        as_processes(3, [&](const std::shared_ptr<Communicator>& processes) {
+            const auto work = [&]() -> int {
+                if (processes->rank() == culprit) throw InputError("wrong");
+                return 7;
+            };
+            try {
+                together(*processes, work);
+                ADD_FAILURE() << "nothing was thrown";
+            } catch (const InputError& error) {
+                EXPECT_TRUE(std::string(error.what()).starts_with("wrong"));
+            }
+            EXPECT_EQ(together(*processes, [] { return 7; }), 7);
+        });
+}
+
+}  // namespace
+}  // namespace lamella::dist
