@@ -113,7 +113,7 @@ phase-separation|bubble/phase-separation-small|last||Bubbles gather and leave li
 paper-cube|vortex_sheet/paper-cube --until 0.5|5||The cube of the paper's table, half a unit of time after its start
 paper-double-bubble|vortex_sheet/paper-double-bubble --until 0.5|5|--camera -80,25|The double bubble of the paper's table
 paper-cluster-popping|vortex_sheet/paper-cluster-popping --until 1|1|--exposure 0.8|The ten bubbles of the paper's table before the first bursts
-double-bubble-equal|equilibrium/double-bubble-small|last|--ground|Two bubbles of one size, at rest
+double-bubble-equal|equilibrium/double-bubble-small|last|--environment daylight --camera -75,20|Two bubbles of one size, at rest, under a hazy sky
 melp-double-volumes-0.02|equilibrium/melp-double-volumes-0.02-small|last||Bubbles that had radii of 2 and 5 cm before they met
 melp-double-volumes-0.025|equilibrium/melp-double-volumes-0.025-small|last||Bubbles that had radii of 2.5 and 5 cm before they met
 melp-double-volumes-0.035|equilibrium/melp-double-volumes-0.035-small|last||Bubbles that had radii of 3.5 and 5 cm before they met
