@@ -205,8 +205,11 @@ void complete(const PictureSource& source, const std::vector<std::size_t>& chose
     if (!options->thickness.empty()) picture.thickness = parse_quantity(options->thickness, "m");
     if (!options->video.empty() && fs::path(options->video).extension() != ".mp4")
         throw InputError(fmt::format("{}: a film ends in .mp4", options->video));
-    picture.view = render::usual_view(source.frame(chosen[0]));
-    if (!picture.field.empty()) picture.view.shift = 0.09;
+    const auto width = static_cast<double>(picture.width), height = static_cast<double>(picture.height);
+    const double legend = picture.field.empty() ? 0.0 : 0.22;  // of the width
+    const double shorter = std::min(width, height);
+    picture.view = render::usual_view(source.frame(chosen[0]), {{(1.0 - legend) * width / shorter, height / shorter}});
+    picture.view.shift = 0.5 * legend;
     if (!options->camera.empty()) read_camera(options->camera, &picture.view);
     if (options->frame == "all") share_view(source, chosen, options);
 }

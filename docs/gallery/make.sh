@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes every picture of the gallery and its page. It runs each scene, so it takes some minutes; what a scene
-# needs is in the list below.
+# Makes every picture of the gallery and its page. It runs each scene, most of them in their small version, and the
+# whole of it takes about half an hour; what a picture needs is in the list below.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
@@ -51,15 +51,22 @@ sweeping-ring|vortex_sheet/sweeping-ring-small|6||A ring sweeps through air and 
 catenoid-pinching|vortex_sheet/catenoid-pinching-small|32||A film between two rings, drawn too far apart, pinches
 carousel|vortex_sheet/carousel-small|10|--camera -75,35|Bubbles carried round
 cluster-popping|vortex_sheet/cluster-popping-small|10|--exposure 0.8|A cluster whose bubbles pop one after the other
+bursting-in-flight|vortex_sheet/bursting-in-flight-small|1||A bubble flies towards another; it bursts, and its air flies on as a vortex ring
 cube-oscillation|vortex_sheet/cube-oscillation-small|17||A cube of soap film swings around the sphere
 octahedron|vortex_sheet/octahedron-small|last|--exposure 0.9|Films on an octahedron of wire
 vortices-on-a-bubble|vortex_particle/sphere-vortices-small|40|--environment window|Vortices of both signs stir the liquid of a bubble
 stick|vortex_particle/stick-small --set vortex_particle.particles_in_frames=true|54|--camera -90,58,1.33|A stick was dragged through a film that is thicker on one side
+vortex-street|vortex_particle/street-small|60||A film streams around a disk: a street of vortices
+water-strider|vortex_particle/strider-small|40||Two legs of a water strider row through a film
+springing-flat|vortex_particle/hemisphere-small|8||Half a bubble on a ring lets its air out and springs flat
+giant-bubble|vortex_particle/giant-bubble-small|30||A giant bubble that was blown askew swings
+joining-bubbles|vortex_particle/double-bubble-small|20||Two bubbles with a vortex each have flown together
+billowing-film|vortex_particle/deforming-rectangle-small|12|--camera -62,-20,1.2|A film that is thick above comes down and billows
 fingers|vortex_particle/rayleigh-taylor-small --set vortex_particle.particles_in_frames=true|36|--camera -90,58,1.3|Thick film comes down in fingers through thin film
 around-a-catenoid|vortex_particle/catenoid-small|40|--camera -62,24|A flow around a catenoid carries a vortex along
-drainage-of-a-square|vortex_particle/drainage-small|50|--camera -90,62,1.1|A film drains until its surfactant carries it
-drainage-of-a-disk|vortex_particle/drainage-disk-small|50|--camera -90,58,1.05|The same in a ring
-leapfrog|vortex_particle/leapfrog-small|30|--field vorticity --camera -90,90,1.08|Two pairs of vortices run one through the other
+drainage-of-a-square|vortex_particle/drainage-small|50||A film drains until its surfactant carries it
+drainage-of-a-disk|vortex_particle/drainage-disk-small|50||The same in a ring
+leapfrog|vortex_particle/leapfrog-small|60|--field vorticity --camera -90,90,0.92|Two pairs of vortices run one through the other
 taylor-vortices|vortex_particle/taylor-vortices-small|40|--field vorticity --camera -90,90,1.25|Two Taylor vortices part
 rossby-haurwitz|vortex_particle/rossby-haurwitz-small|20|--field vorticity|A Rossby-Haurwitz wave on a bubble that turns
 draining-bubble|melp/drainage-small|20||The liquid of a floating bubble sinks
@@ -67,6 +74,14 @@ equalisation|melp/equalisation-small|10|--environment window|Uneven liquid pulls
 bubble-at-rest|melp/bubble-at-rest-small|2||A bubble at rest
 oscillating-bubble|melp/oscillating-bubble-small|0||A bubble pulled out of shape
 double-bubble-of-particles|melp/double-bubble-small|last|--environment window|Two bubbles of particles share a film
+film-drainage|melp/film-drainage-small|10||An upright film in a frame drains
+fingers-of-particles|melp/rayleigh-taylor-small|14||Thick film above thin film, made of particles, sinks in fingers
+deforming-rectangle|melp/deforming-rectangle-small|24||The upper side of a frame swings to the front, and the film with it
+half-bubble|melp/half-bubble-small|10||Half a bubble on a plate, in the wind
+bursting-disk|melp/burst-disk-small|7||A film in a ring was pricked: the hole's edge gathers the liquid
+bursting-giant|melp/giant-bubble-small|4||A giant bubble, pricked from the right, a few milliseconds later
+four-bubbles|melp/four-bubbles-small|10|--exposure 0.8|Four bubbles have flown together
+thirteen-bubbles|melp/thirteen-bubbles-small|6|--exposure 0.6|Twelve bubbles have flown at one in their middle
 catenoid|equilibrium/catenoid-0.8-small|last||The catenoid between two rings
 catenoid-0.4|equilibrium/catenoid-0.4-small|last||The same between rings that are near
 catenoid-1.3|equilibrium/catenoid-1.3-small|last||The same, nearly as far apart as rings can be
@@ -89,16 +104,16 @@ quadruple-bubble|equilibrium/quadruple-bubble-small|last||Four bubbles of equal 
 cluster-6|equilibrium/cluster-6-small|last|--environment window --exposure 0.8|Six bubbles of equal volume
 cluster-13|equilibrium/cluster-13-small|last|--exposure 0.7|Thirteen bubbles: one inside, twelve around it
 inflate-and-pop|equilibrium/inflate-and-pop-small|last|--ground|Bubbles inflated, others popped
-kelvin|equilibrium/kelvin-small|last|--exposure 0.8|Kelvin's foam, eight unit cells
-weaire-phelan|equilibrium/weaire-phelan-small|last|--exposure 0.7|The foam of Weaire and Phelan, eight unit cells
+kelvin|equilibrium/kelvin-small|last|--exposure 0.8|Kelvin's foam, sixteen bubbles
+weaire-phelan|equilibrium/weaire-phelan-small|last|--exposure 0.6 --samples 32|The foam of Weaire and Phelan, 64 bubbles
 coarsening-2d|bubble/coarsening-2d-small|last|--field radius|A flat foam coarsens: the large grow, the small vanish
 coarsening-3d|bubble/coarsening-3d-small|last|--ground|A foam coarsens
 flow-2d|bubble/flow-2d-small|last|--field velocity|A flat foam flows
 phase-separation|bubble/phase-separation-small|last||Bubbles gather and leave liquid between them
-paper-cube|vortex_sheet/paper-cube --until 0.5|5|--environment window|The cube of the paper's table, half a unit of time after its start
+paper-cube|vortex_sheet/paper-cube --until 0.5|5||The cube of the paper's table, half a unit of time after its start
 paper-double-bubble|vortex_sheet/paper-double-bubble --until 0.5|5|--camera -80,25|The double bubble of the paper's table
 paper-cluster-popping|vortex_sheet/paper-cluster-popping --until 1|1|--exposure 0.8|The ten bubbles of the paper's table before the first bursts
-double-bubble-equal|equilibrium/double-bubble-small|last|--ground|Two bubbles of one size, at rest
+double-bubble-equal|equilibrium/double-bubble-small|last|--environment daylight --camera -75,20|Two bubbles of one size, at rest, under a hazy sky
 melp-double-volumes-0.02|equilibrium/melp-double-volumes-0.02-small|last||Bubbles that had radii of 2 and 5 cm before they met
 melp-double-volumes-0.025|equilibrium/melp-double-volumes-0.025-small|last||Bubbles that had radii of 2.5 and 5 cm before they met
 melp-double-volumes-0.035|equilibrium/melp-double-volumes-0.035-small|last||Bubbles that had radii of 3.5 and 5 cm before they met
@@ -125,8 +140,9 @@ while IFS='|' read -r name scene frame options text; do
     # shellcheck disable=SC2086  # scene and options are words
     [ -f "$run/frames.pvd" ] || "$program" run $scene --out "$run" --overwrite --progress none </dev/null
     case $options in *--size*) ;; *) options="$options --size $size" ;; esac
+    case $options in *--samples*) ;; *) options="$options --samples $samples" ;; esac
     # shellcheck disable=SC2086  # options are words
-    "$program" render "$run" --frame "$frame" --samples "$samples" --progress none --out "$runs/$name.png" \
+    "$program" render "$run" --frame "$frame" --progress none --out "$runs/$name.png" \
         $options </dev/null
     ffmpeg -nostdin -loglevel error -y -i "$runs/$name.png" -q:v 2 "$here/$name.jpg"
 done < <(pictures)

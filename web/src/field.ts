@@ -46,6 +46,13 @@ export function thicknessField(frame: Frame, place: "vertices" | "points"): Fiel
 /// Whether there is anything that has the colors of films.
 export const hasFilms = (frame: Frame): boolean => frame.films !== null || thicknessField(frame, "points") !== undefined;
 
+/// Whether the points are particles that carry the films which are drawn anyway, not bubbles.
+export const carriesFilms = (frame: Frame): boolean => frame.films !== null && frame.points !== null && frame.points.radius === null;
+
+/// Particles that lie on films hide them: they are drawn where somebody wants them, or a field of theirs.
+export const showsPoints = (frame: Frame, coloring: string, wanted: boolean): boolean =>
+  frame.points !== null && (!carriesFilms(frame) || wanted || findField(frame, coloring)?.place === "points");
+
 /// What a frame looks best in when nobody has chosen: films in their own colors, balls by their size.
 export function defaultColoring(frame: Frame): string {
   if (hasFilms(frame)) return FILM_COLORS;

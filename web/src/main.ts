@@ -2,7 +2,7 @@
 import { api, Region, State } from "./api";
 import { Charts } from "./charts";
 import { Frame } from "./decode";
-import { defaultColoring, fieldKey, FILM_COLORS, findField, hasFilms, magnitudes, Range, rangeOf, thicknessField } from "./field";
+import { carriesFilms, defaultColoring, fieldKey, FILM_COLORS, findField, hasFilms, magnitudes, Range, rangeOf, thicknessField } from "./field";
 import { fieldLegend, filmLegend, thicknessStrip } from "./legend";
 import { byId, dictionary, Message } from "./page";
 import { Player } from "./player";
@@ -21,6 +21,7 @@ const message = new Message(byId("message"));
 const coloring = byId<HTMLSelectElement>("coloring");
 const thickness = byId<HTMLInputElement>("thickness");
 const opacity = byId<HTMLInputElement>("opacity");
+const particles = byId<HTMLInputElement>("particles");
 const hold = byId<HTMLInputElement>("hold");
 const cutAxis = byId<HTMLSelectElement>("cut-axis");
 const cut = byId<HTMLInputElement>("cut");
@@ -38,7 +39,7 @@ let following = false;
 // ---- what is shown ----
 
 function look(): Look {
-  return { coloring: coloring.value, range, thicknessNm: Number(thickness.value), opacity: Number(opacity.value) };
+  return { coloring: coloring.value, range, thicknessNm: Number(thickness.value), opacity: Number(opacity.value), particles: particles.checked };
 }
 
 /// Of the films' own thickness; of the slider's where they have none.
@@ -57,6 +58,7 @@ function redraw(): void {
   byId("thickness-row").hidden = field !== undefined || !frame.films || thicknessField(frame, "vertices") !== undefined;
   byId("opacity-row").hidden = !field || field.place === "points";
   byId("hold-row").hidden = !field;
+  byId("particles-row").hidden = !carriesFilms(frame) || field?.place === "points"; // their field shows them
   byId("thickness-text").textContent = `${thickness.value}\u202fnm`;
   const legend = byId("legend");
   legend.hidden = !field && !hasFilms(frame);
@@ -66,12 +68,18 @@ function redraw(): void {
   stage?.cut(cutAxis.value === "" ? null : (Number(cutAxis.value) as 0 | 1 | 2), Number(cut.value));
 }
 
+/// Films and the particles that carry them often have fields of one name.
+function coloringText(of: Frame, key: string): string {
+  const [place, name] = key.split(":");
+  return nameText(name ?? key) + (place === "points" && carriesFilms(of) ? " of the particles" : "");
+}
+
 function offerColorings(of: Frame): void {
   const keys = [...(hasFilms(of) ? [FILM_COLORS] : []), ...of.fields.filter((f) => f.name !== "on_wire").map(fieldKey)];
   if (keys.join() === [...coloring.options].map((o) => o.value).join()) return;
   const before = coloring.value;
   coloring.replaceChildren(
-    ...keys.map((key) => new Option(key === FILM_COLORS ? "film colors" : nameText(key.split(":")[1] ?? key), key)),
+    ...keys.map((key) => new Option(key === FILM_COLORS ? "film colors" : coloringText(of, key), key)),
   );
   coloring.value = keys.includes(before) ? before : defaultColoring(of);
 }
@@ -334,7 +342,7 @@ function listen(): void {
     redraw();
   });
   for (const input of [thickness, opacity, cut]) input.addEventListener("input", redraw);
-  hold.addEventListener("change", redraw);
+  for (const input of [hold, particles]) input.addEventListener("change", redraw);
   cutAxis.addEventListener("change", () => setCut(cutAxis.value));
   byId("run-pause").addEventListener("click", () => void control(state?.paused ? "resume" : "pause"));
   byId("run-stop").addEventListener("click", () => void control("stop"));

@@ -4,7 +4,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Balls } from "./balls";
 import { mapTexture } from "./colormap";
 import { Box, ColorTable, FieldPlace, Frame } from "./decode";
-import { FILM_COLORS, findField, magnitudes, Range, thicknessField } from "./field";
+import { FILM_COLORS, findField, magnitudes, Range, showsPoints, thicknessField } from "./field";
 import { FilmMesh } from "./films";
 import { seenBalls } from "./hidden_balls";
 import { reflectedUniforms } from "./interference";
@@ -18,6 +18,7 @@ export interface Look {
   range: Range | null; // of the colors
   thicknessNm: number; // of films that have no field of it
   opacity: number; // of films that show a field
+  particles: boolean; // those that carry films are wanted
 }
 
 export type Pick = { kind: "region"; region: number } | { kind: "ball"; index: number } | null;
@@ -226,6 +227,7 @@ export class Stage {
       this.showBox(frame.box);
       this.shown = { frame, coloring: look.coloring };
     }
+    this.balls.object.visible = showsPoints(frame, look.coloring, look.particles);
     if (field && field.place !== "points") this.films.colorByField(look.range?.low ?? 0, look.range?.high ?? 1, look.opacity);
     else this.films.colorByFilm(thicknessField(frame, "vertices") !== undefined, look.thicknessNm);
     const range = this.balls.object.material.uniforms["range"];
@@ -243,11 +245,11 @@ export class Stage {
     return this.distanceToFit({ right: right!, up: up!, back: back! }) > this.camera.position.distanceTo(this.controls.target);
   }
 
-  /// Of balls their own; particles without one are small beside their distance from each other, unless they carry a film.
+  /// Of balls their own; particles without one are small beside their distance from each other, unless they are all there is of a film.
   private radii(frame: Frame, size: number): Float32Array {
     if (!frame.points) return new Float32Array(0);
     const count = frame.points.position.length / 3;
-    const share = thicknessField(frame, "points") ? 0.5 : 0.2;
+    const share = !frame.films && thicknessField(frame, "points") ? 0.5 : 0.2;
     return frame.points.radius ?? new Float32Array(count).fill((share * size) / Math.sqrt(count));
   }
 
@@ -334,7 +336,7 @@ export class Stage {
       const region = pickRegion(this.frame.films, ray, plane);
       if (region > 0) return { kind: "region", region };
     }
-    if (this.frame.points) {
+    if (this.frame.points && this.balls.object.visible) {
       const index = pickBall(this.frame.points, this.radius, ray, plane, this.frame.box?.dimension === 2);
       if (index >= 0) return { kind: "ball", index };
     }

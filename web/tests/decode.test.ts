@@ -8,7 +8,7 @@ import { Axes, distanceToFit, usualAxes } from "../src/viewpoint";
 import { Pace } from "../src/pace";
 import { farthestFirst } from "../src/depth_order";
 import { Eye, seenBalls } from "../src/hidden_balls";
-import { magnitudes, rangeOf } from "../src/field";
+import { magnitudes, rangeOf, showsPoints } from "../src/field";
 
 type Typed = Float32Array | Uint32Array | Int32Array | Int16Array;
 interface Entry {
@@ -275,4 +275,21 @@ test("balls that any ray meets first are drawn, most of the hidden ones are not"
   }
   const last = seenBalls(position, radius, { position: [side / 2, side / 2, 3 * side], right: [1, 0, 0], up: [0, 1, 0], back: [0, 0, -1], focus: 700, width: 500, height: 360 }, plane);
   assert.equal(last.length, 0); // all lie behind the eye
+});
+
+test("particles are hidden where films are drawn, unless they or a field of theirs are wanted", () => {
+  const particles = (radius: Entry[] = []): Entry[] => [
+    { set: "points", name: "position", components: 3, values: Float32Array.of(0, 0, 0, 1, 0, 0), unit: "m" },
+    { set: "point_fields", name: "vorticity", components: 1, values: Float32Array.of(1, 2), unit: "1/s" },
+    ...radius,
+  ];
+  const both = decodeFrame(pack(HEADER, [...triangle(), ...particles()]));
+  assert.equal(showsPoints(both, "film colors", false), false);
+  assert.equal(showsPoints(both, "vertices:velocity", false), false);
+  assert.equal(showsPoints(both, "film colors", true), true);
+  assert.equal(showsPoints(both, "points:vorticity", false), true);
+  assert.equal(showsPoints(decodeFrame(pack(HEADER, particles())), "film colors", false), true); // nothing else is there
+  const radius = { set: "points", name: "radius", components: 1, values: Float32Array.of(1, 2), unit: "m" };
+  assert.equal(showsPoints(decodeFrame(pack(HEADER, [...triangle(), ...particles([radius])])), "film colors", false), true); // bubbles
+  assert.equal(showsPoints(decodeFrame(pack(HEADER, triangle())), "film colors", true), false);
 });

@@ -190,6 +190,24 @@ const tests = {
     assert.deepEqual(page.faults, []);
   },
 
+  async "particles that carry films are hidden until they are wanted"() {
+    const folder = run("melp/bubble-at-rest-small", "particles", "--until", "0.01", "--set", "resolution.edge_length=0.006");
+    const page = await open((await view(folder)).address);
+    await atFrame(page, 0);
+    const film = await colors(page, ...MIDDLE);
+    assert.equal(await page.locator("#particles").isChecked(), false);
+    await page.locator("#particles").check();
+    const grainy = await colors(page, ...MIDDLE);
+    const differs = (a, b) => a.mean.some((c, k) => Math.abs(c - b.mean[k]) > 4);
+    assert.ok(differs(film, grainy), `the switch changes nothing: ${JSON.stringify({ film, grainy })}`);
+    await page.locator("#particles").uncheck();
+    assert.ok(!differs(film, await colors(page, ...MIDDLE)), "particles are still there");
+    await page.locator("#coloring").selectOption("points:velocity");
+    assert.equal(await page.locator("#particles-row").isVisible(), false);
+    assert.ok(differs(film, await colors(page, ...MIDDLE)), "their field does not show particles");
+    assert.deepEqual(page.faults, []);
+  },
+
   async "a damaged frame gives a message, and the others are still shown"() {
     const folder = run("vortex_sheet/double-bubble-small", "damaged", "--until", "0.005");
     truncateSync(join(folder, "frames/000001.vtp"), 4000);

@@ -67,44 +67,64 @@ std::optional<Vec3> common_normal(const sim::Surface& s) {
     return sum / norm(sum);
 }
 
-/// The zoom with which things in a plane fill a picture that is a third wider than tall, seen from where `view` stands.
-double filling_zoom(const sim::Frame& frame, const View& view) {
+constexpr double kMargin = 1.06;  // around the ball that holds everything
+
+/// The zoom with which everything just fits the part of a picture that is free, seen from where `view` stands: not its
+/// ball, as that of a film in a plane is mostly empty.
+double filling_zoom(const sim::Frame& frame, const View& view, const Vec2& room) {
     const Bounds bounds = frame_bounds(frame);
     const double az = view.azimuth_deg * std::numbers::pi / 180.0, el = view.elevation_deg * std::numbers::pi / 180.0;
+    const Vec3 back{{std::cos(el) * std::cos(az), std::cos(el) * std::sin(az), std::sin(el)}};
     const Vec3 right{{-std::sin(az), std::cos(az), 0.0}};
-    const Vec3 up{{-std::sin(el) * std::cos(az), -std::sin(el) * std::sin(az), std::cos(el)}};
-    constexpr double kWider = 4.0 / 3.0, kNearer = 1.08;  // what lies before the middle looks larger
-    double most = 0.0;
+    const Vec3 up = cross(back, right);
+    const double half_angle = 0.5 * view.field_of_view_deg * std::numbers::pi / 180.0;
+    constexpr double kFilled = 0.94;
+    double distance = 0.0;  // of the camera from the middle
     const auto include = [&](const Vec3& p, double r) {
         const Vec3 arm = p - bounds.center;
-        most = std::max({most, (std::abs(dot(arm, right)) + r) / kWider, std::abs(dot(arm, up)) + r});
+        const double off = std::max((std::abs(dot(arm, right)) + r) / room[0], (std::abs(dot(arm, up)) + r) / room[1]);
+        distance = std::max(distance, dot(arm, back) + off / (kFilled * std::tan(half_angle)));
     };
     for (const auto& t : frame.surface.triangles)
         for (const std::uint32_t v : t) include(frame.surface.position[v], 0.0);
+    for (std::size_t i = 0; i < frame.points.radius.size(); ++i)
+        include(frame.points.position[i], frame.points.radius[i]);
     for (const sim::Solid& solid : frame.solids) include(solid.center, solid.radius);
-    return bounds.radius / (kNearer * most);
+    return kMargin * bounds.radius / (std::sin(half_angle) * distance);
+}
+
+/// From where a film that stands upright in a plane is seen: a little from the side, and from below, so that it mirrors
+/// lamps and not the floor.
+View before_upright_film(const Vec3& normal) {
+    View view;
+    constexpr double kDegrees = 180.0 / std::numbers::pi, kOblique = 40.0;
+    const double toward = std::atan2(normal[1], normal[0]) * kDegrees;
+    const double turned = std::remainder(toward - view.azimuth_deg, 180.0);  // from the usual place to before the film
+    if (std::abs(turned) > kOblique) view.azimuth_deg += turned - std::copysign(kOblique, turned);
+    view.elevation_deg = -20.0;
+    return view;
 }
 
 }  // namespace
 
-View usual_view(const sim::Frame& frame) {
-    if (frame.box && frame.box->dimension == 2) return {.azimuth_deg = -90.0, .elevation_deg = 90.0, .zoom = 1.3};
+View usual_view(const sim::Frame& frame, const Vec2& room) {
     View view;
+    view.zoom = std::min({1.0, room[0], room[1]});
+    if (frame.box && frame.box->dimension == 2) {
+        view = {.azimuth_deg = -90.0, .elevation_deg = 90.0};
+        if (!frame.surface.empty() || !frame.points.empty()) view.zoom = filling_zoom(frame, view, room);
+        return view;
+    }
     if (!frame.points.radius.empty()) return view;
     const std::optional<Vec3> normal = common_normal(frame.surface);
     if (!normal) return view;
-    constexpr double kDegrees = 180.0 / std::numbers::pi;
-    const double lie = std::abs((*normal)[2]);
-    if (lie > 0.7) {  // it lies: y goes up in the picture, and the film mirrors what is above
-        view.azimuth_deg = -90.0;
-        view.elevation_deg = 58.0;
-        view.zoom = filling_zoom(frame, view);
-        return view;
-    }
-    const double toward = std::atan2((*normal)[1], (*normal)[0]) * kDegrees;
-    const double turned = std::remainder(toward - view.azimuth_deg, 180.0);  // from the usual place to before the film
-    constexpr double kOblique = 40.0;
-    if (std::abs(turned) > kOblique) view.azimuth_deg += turned - std::copysign(kOblique, turned);
+    constexpr double kLies = 0.7;
+    // A film that lies: y goes up in the picture, and the film mirrors what is above.
+    if (std::abs((*normal)[2]) > kLies)
+        view.azimuth_deg = -90.0, view.elevation_deg = 58.0;
+    else
+        view = before_upright_film(*normal);
+    view.zoom = filling_zoom(frame, view, room);
     return view;
 }
 
@@ -114,7 +134,6 @@ Camera::Camera(const View& view, const Bounds& bounds, std::size_t width, std::s
     const Vec3 right{{-std::sin(az), std::cos(az), 0.0}};
     const Vec3 up = cross(back, right);
     const double half_angle = 0.5 * view.field_of_view_deg * std::numbers::pi / 180.0;
-    constexpr double kMargin = 1.06;
     position_ = bounds.center + kMargin * bounds.radius / (std::sin(half_angle) * view.zoom) * back;
     const double shorter = static_cast<double>(std::min(width, height));
     const double pixel = 2.0 * std::tan(half_angle) / shorter;

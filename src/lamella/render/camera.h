@@ -27,7 +27,8 @@ Bounds joined(const Bounds& a, const Bounds& b);
 
 /// From where a frame is best seen: what is flat and two-dimensional from straight above; a film in a plane, which
 /// would be seen from its edge, so that one looks on it; all else a little from the side and above.
-View usual_view(const sim::Frame& frame);
+/// @param room  width and height that are free of the picture, relative to its shorter side
+View usual_view(const sim::Frame& frame, const Vec2& room = {{4.0 / 3.0, 1.0}});
 
 /// Rays through the points of a picture.
 class Camera {

@@ -93,23 +93,26 @@ Rgb shoulder(const Rgb& light) {
     return (kKnee + (1.0 - kKnee) * (1.0 - std::exp(-(bright - kKnee) / (1.0 - kKnee)))) / bright * light;
 }
 
-/// Which pixels of a tile may show more than the background: those near a pixel that two rays find occupied. What is
-/// thinner than a third of a pixel and apart from all else can be missed.
+/// Which pixels of a tile may show more than the background: those within two pixels of one that two rays find
+/// occupied. The rays of a pixel start up to a pixel beside it, and what two rays miss can reach across half a pixel.
+/// What is thinner than a third of a pixel and apart from all else can be missed.
 std::vector<std::uint8_t> occupied(const Studio& studio, const Tile& tile) {
-    const std::size_t across = tile.x1 - tile.x0 + 2, down = tile.y1 - tile.y0 + 2;
+    constexpr std::size_t kReach = 2, kWide = 2 * kReach + 1;
+    const std::size_t across = tile.x1 - tile.x0 + 2 * kReach, down = tile.y1 - tile.y0 + 2 * kReach;
     std::vector<std::uint8_t> found(across * down, 0);
     const auto probe = [&](double x, double y) {
         return studio.stage.rays->meets_anything(studio.camera.position(), studio.camera.direction(x, y));
     };
     for (std::size_t j = 0; j < down; ++j)
         for (std::size_t i = 0; i < across; ++i) {
-            const double x = static_cast<double>(tile.x0 + i) - 1.0, y = static_cast<double>(tile.y0 + j) - 1.0;
+            const double x = static_cast<double>(tile.x0 + i) - kReach, y = static_cast<double>(tile.y0 + j) - kReach;
             found[j * across + i] = probe(x + 0.25, y + 0.3) || probe(x + 0.75, y + 0.7) ? 1 : 0;
         }
-    std::vector<std::uint8_t> near((across - 2) * (down - 2), 0);
-    for (std::size_t j = 0; j < down - 2; ++j)
-        for (std::size_t i = 0; i < across - 2; ++i)
-            for (std::size_t k = 0; k < 9; ++k) near[j * (across - 2) + i] |= found[(j + k / 3) * across + i + k % 3];
+    const std::size_t width = across - 2 * kReach;
+    std::vector<std::uint8_t> near(width * (down - 2 * kReach), 0);
+    for (std::size_t k = 0; k < near.size(); ++k)
+        for (std::size_t n = 0; n < kWide * kWide; ++n)
+            near[k] |= found[(k / width + n / kWide) * across + k % width + n % kWide];
     return near;
 }
 

@@ -59,10 +59,19 @@ TEST(UsualView, LooksOnFilmsInAPlane) {
         const Vec3 normal{{by == 1 ? 1.0 : 0.0, by == 2 ? 1.0 : 0.0, by == 0 ? 1.0 : 0.0}};
         EXPECT_GT(std::abs(dot(direction(usual_view(film)), normal)), 0.7) << by;
     }
-    EXPECT_EQ(usual_view(flat_film(3)).azimuth_deg, -90.0);  // y goes up
-    const sim::Frame film = flat_film(3);
-    const Camera camera(usual_view(film), frame_bounds(film), 400, 300);
-    double farthest = 0.0;  // of the film's points from the middle of the picture, its edges being 1
+    EXPECT_EQ(usual_view(flat_film(3)).azimuth_deg, -90.0);             // y goes up
+    EXPECT_LT(direction(usual_view(turned(flat_film(3), 1)))[2], 0.0);  // upright: its mirror image is that of lamps
+    EXPECT_EQ(usual_view(sphere_film(2)).elevation_deg, View{}.elevation_deg);
+    sim::Frame foam = one_ball();
+    foam.box = sim::Box{.dimension = 2, .origin = {}, .lengths = {{1.0, 1.0, 0.0}}, .periodic = {}};
+    EXPECT_EQ(usual_view(foam).elevation_deg, 90.0);
+    EXPECT_EQ(usual_view({}).elevation_deg, View{}.elevation_deg);
+}
+
+/// How far from the middle of a picture of 400 x 300 pixels the film comes, its edges being 1: across and up.
+Vec2 filled_part(const sim::Frame& film, const View& view) {
+    const Camera camera(view, frame_bounds(film), 400, 300);
+    Vec2 farthest{};
     for (const Vec3& p : film.surface.position) {
         const Vec3 ray = p - camera.position(), ahead = -1.0 * camera.position();
         const Vec3 right = camera.direction(400.0, 150.0) - camera.direction(0.0, 150.0),
@@ -71,16 +80,20 @@ TEST(UsualView, LooksOnFilmsInAPlane) {
             const Vec3 n = axis / norm(axis);
             return std::abs(dot(ray, n) / dot(ray, ahead)) / std::abs(dot(edge, n) / dot(edge, ahead));
         };
-        farthest =
-            std::max({farthest, share(right, camera.direction(400.0, 150.0)), share(up, camera.direction(200.0, 0.0))});
+        farthest = {{std::max(farthest[0], share(right, camera.direction(400.0, 150.0))),
+                     std::max(farthest[1], share(up, camera.direction(200.0, 0.0)))}};
     }
-    EXPECT_LT(farthest, 1.0);
-    EXPECT_GT(farthest, 0.85);
-    EXPECT_EQ(usual_view(sphere_film(2)).elevation_deg, View{}.elevation_deg);
-    sim::Frame foam = one_ball();
-    foam.box = sim::Box{.dimension = 2, .origin = {}, .lengths = {{1.0, 1.0, 0.0}}, .periodic = {}};
-    EXPECT_EQ(usual_view(foam).elevation_deg, 90.0);
-    EXPECT_EQ(usual_view({}).elevation_deg, View{}.elevation_deg);
+    return farthest;
+}
+
+TEST(UsualView, FillsWhatIsFreeOfThePicture) {
+    for (const std::size_t by : {0U, 1U, 2U}) {
+        const sim::Frame film = turned(flat_film(3), by);
+        const Vec2 all = filled_part(film, usual_view(film));
+        EXPECT_NEAR(std::max(all[0], all[1]), 0.94, 0.01) << by;
+        const Vec2 half = filled_part(film, usual_view(film, {{0.5 * 4.0 / 3.0, 1.0}}));
+        EXPECT_NEAR(std::max(2.0 * half[0], half[1]), 0.94, 0.01) << by;
+    }
 }
 
 }  // namespace

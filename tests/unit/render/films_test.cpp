@@ -1,3 +1,4 @@
+#include "lamella/render/camera.h"
 #include "lamella/render/detail/assumed_thickness.h"
 #include "lamella/render/detail/curved_film.h"
 #include "lamella/render/detail/particle_average.h"
@@ -132,10 +133,34 @@ TEST(PeriodicImages, JoinAcrossTheBox) {
     EXPECT_EQ(patches.borders.size(), 4U * 12U);  // the outer rim only
     for (const BorderEdge& edge : patches.borders) EXPECT_FALSE(edge.on_wire);
 
-    frame.box->periodic = {false, false, true};  // images above each other do not touch: one is left
-    EXPECT_EQ(periodic_images(frame, 2).surface.triangles.size(), frame.surface.triangles.size());
     frame.box.reset();
     EXPECT_EQ(periodic_images(frame, 2).surface.position.size(), frame.surface.position.size());
+}
+
+TEST(PeriodicImages, PutBubblesTogether) {
+    const sim::Frame bubble = sphere_film(2);
+    sim::Frame frame = bubble;  // each of its triangles with corners of its own, in some other box
+    frame.box = sim::Box{.dimension = 3, .origin = {}, .lengths = {{2.5, 2.5, 2.5}}, .periodic = {true, true, true}};
+    frame.surface.position.clear();
+    for (sim::Field& field : frame.surface.vertex_fields) field.values.clear();
+    for (std::size_t t = 0; t < bubble.surface.triangles.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 cell{{static_cast<double>(t % 3), static_cast<double>(t % 2), -static_cast<double>(t % 5)}};
+            const std::uint32_t v = bubble.surface.triangles[t][k];
+            frame.surface.triangles[t][k] = static_cast<std::uint32_t>(frame.surface.position.size());
+            frame.surface.position.push_back(bubble.surface.position[v] + 2.5 * cell);
+            for (std::size_t f = 0; f < frame.surface.vertex_fields.size(); ++f)
+                frame.surface.vertex_fields[f].values.push_back(bubble.surface.vertex_fields[f].values.at(v));
+        }
+    for (const int count : {1, 2}) {
+        const sim::Frame whole = periodic_images(frame, count);
+        const auto times = static_cast<std::size_t>(count * count * count);
+        EXPECT_EQ(whole.surface.triangles.size(), times * bubble.surface.triangles.size());
+        const FilmPatches patches = film_patches(whole.surface);
+        EXPECT_EQ(patches.point.size(), times * bubble.surface.position.size());
+        EXPECT_TRUE(patches.borders.empty());  // no film ends in the air
+        EXPECT_NEAR(frame_bounds(whole).radius, count == 1 ? 1.0 : 1.0 + 1.25 * std::sqrt(3.0), 0.05);
+    }
 }
 
 }  // namespace

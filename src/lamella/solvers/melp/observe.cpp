@@ -1,5 +1,6 @@
 // What can be seen of films made of particles.
 
+#include "lamella/solvers/melp/film_ends.h"
 #include "lamella/solvers/melp/melp_solver.h"
 #include "lamella/solvers/melp/redistribution.h"
 #include "lamella/solvers/melp/start.h"
@@ -32,23 +33,39 @@ Spread spread_of(const std::vector<double>& value, const std::vector<double>& we
     return s;
 }
 
+constexpr double kEnds = 1.5;  // [spacings] of the nearest rim: films end there, farther away in holes
+
 void append(std::vector<double>& to, const Vec3& x) { to.insert(to.end(), x.v, x.v + 3); }
 
 }  // namespace
 
-/// The films as triangles between coarse particles, each region's on its own.
+/// The films as triangles between coarse particles, each region's on its own, up to the rims that hold them.
 sim::Surface MelpSolver::surface() const {
     sim::Surface surface;
     surface.position = coarse_.position;
     surface.triangles = surface_triangles(coarse_, geometry_);
+    const FilmEnds ends = film_ends(coarse_, surface.triangles, rims_now_, kEnds * spacing_);
+    for (const FilmEnds::Foot& foot : ends.feet) surface.position.push_back(foot.position);
+    surface.triangles.insert(surface.triangles.end(), ends.triangles.begin(), ends.triangles.end());
     for (const auto& t : surface.triangles)
         surface.regions.push_back({gas_[static_cast<std::size_t>(coarse_.region[t[0]])].region, 0});
     sim::Field velocity{"velocity", "m/s", 3, false, {}};
     for (std::size_t i = 0; i < coarse_.size(); ++i) append(velocity.values, velocity_of(i));
-    surface.vertex_fields = {{"thickness", "m", 1, false, films_.seen_thickness},
-                             {"surfactant_concentration", "mol/m^2", 1, false, films_.concentration},
-                             {"curvature", "1/m", 1, false, geometry_.curvature},
-                             std::move(velocity)};
+    sim::Field on_wire{"on_wire", "-", 1, true, std::vector<double>(coarse_.size(), 0.0)};
+    const auto with_feet = [&](std::vector<double> values) {
+        for (const FilmEnds::Foot& foot : ends.feet) values.push_back(values[foot.particle]);
+        return values;
+    };
+    for (const FilmEnds::Foot& foot : ends.feet) {
+        const RimPiece& piece = rims_now_[foot.piece];
+        append(velocity.values, piece.slides() ? velocity_of(foot.particle) : piece.velocity_at(foot.position));
+        on_wire.values.push_back(piece.slides() ? 0.0 : 1.0);
+    }
+    surface.vertex_fields = {{"thickness", "m", 1, false, with_feet(films_.seen_thickness)},
+                             {"surfactant_concentration", "mol/m^2", 1, false, with_feet(films_.concentration)},
+                             {"curvature", "1/m", 1, false, with_feet(geometry_.curvature)},
+                             std::move(velocity),
+                             std::move(on_wire)};
     const std::size_t regions = input_.films->mesh.regions.size();
     sim::Field closed{"closed", "-", 1, true, std::vector<double>(regions, 0.0)};
     sim::Field target{"target_volume", "m^3", 1, false, std::vector<double>(regions, 0.0)};
