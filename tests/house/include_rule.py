@@ -40,6 +40,8 @@ LIBRARIES = {
     r"Random123/": ["core"],
     r"cub/": ["core"],
     r"Eigen/|unsupported/Eigen/": ["linalg"],
+    r"HYPRE": ["linalg"],
+    r"mpi\.h": ["linalg"],
     r"hdf5": ["io"],
     r"H5[A-Za-z]*public\.h": ["io"],
     r"zlib\.h": ["io"],
