@@ -31,7 +31,8 @@ enum class RandomStream : std::uint32_t {
     kFoamSizes = 8,       ///< volumes of a cluster's bubbles
     kFilmNoise = 9,       ///< slopes of the smooth noise on films
     kFilmParticle = 10,   ///< where particles lie in a triangle of film at the start
-    kPicture = 20,        ///< where the rays of a picture start (9 to 19 are kept for solvers)
+    kFaucet = 11,         ///< sizes of bubbles that enter on the way
+    kPicture = 20,        ///< where the rays of a picture start (12 to 19 are kept for solvers)
 };
 
 /// 128 random bits.

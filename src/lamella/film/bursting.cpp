@@ -38,7 +38,9 @@ std::optional<RegionId> random_outer_bubble(const mesh::FoamMesh& mesh, std::uin
     return outer[std::min(outer.size() - 1, static_cast<std::size_t>(u * static_cast<double>(outer.size())))];
 }
 
-void refuse_punctures(const Problem& films, const char* solver) {
+void refuse_what_melp_alone_knows(const Problem& films, const char* solver) {
+    if (!films.walls.empty()) throw InputError(std::string(solver) + ": [[wall]] is for solver melp");
+    if (!films.releases.empty()) throw InputError(std::string(solver) + ": [[faucet]] is for solver melp");
     for (const Event& event : films.events)
         if (event.kind == Event::Kind::kPuncture)
             throw InputError(std::string(solver) + ": [[event]] with kind = \"puncture\" is for solver melp");

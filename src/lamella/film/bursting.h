@@ -18,7 +18,8 @@ bool share_film(const mesh::FoamMesh& mesh, mesh::RegionId a, mesh::RegionId b);
 /// @param draw  which draw of the run this is: the same seed and draw give the same bubble
 std::optional<mesh::RegionId> random_outer_bubble(const mesh::FoamMesh& mesh, std::uint64_t seed, std::uint64_t draw);
 
-/// @throws InputError  the scene has an [[event]] of kind "puncture", which `solver` does not know
-void refuse_punctures(const Problem& films, const char* solver);
+/// @throws InputError  the scene has an [[event]] of kind "puncture", a [[wall]] or a [[faucet]], which `solver` does
+/// not know
+void refuse_what_melp_alone_knows(const Problem& films, const char* solver);
 
 }  // namespace lamella::film

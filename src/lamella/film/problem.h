@@ -96,8 +96,24 @@ struct Solid {
     }
 };
 
+/// A plane that bubbles rest on without wetting it; they stay on the side that the normal points to. [[wall]] of a scene.
+struct Wall {
+    Vec3 point;             ///< [m]
+    Vec3 normal;            ///< unit
+    bool bursts = false;    ///< bubbles that touch it burst
+};
+
+/// A bubble that enters on the way: one of those of a [[faucet]] of a scene. Its region has no faces at the start.
+struct Release {
+    double time = 0.0;  ///< or later, once its place is free [s]
+    mesh::RegionId region = mesh::kOutside;
+    Vec3 center;          ///< [m]
+    double radius = 0.0;  ///< [m]
+    Vec3 velocity;        ///< [m/s]
+};
+
 /// What every film solver starts from, whatever its method: scene tables [material], [[bubble]], [[film]], [[wire]],
-/// [foam], [resolution], [[event]], [[vortex]], [[solid]].
+/// [foam], [resolution], [[event]], [[vortex]], [[solid]], [[wall]], [[faucet]].
 struct Problem {
     Material material;
     mesh::FoamMesh mesh;        ///< the films at the start
@@ -109,6 +125,8 @@ struct Problem {
     std::vector<Event> events;  ///< in order of time
     std::vector<Vortex> vortices;
     std::vector<Solid> solids;
+    std::vector<Wall> walls;
+    std::vector<Release> releases;  ///< in order of time
 };
 
 }  // namespace lamella::film

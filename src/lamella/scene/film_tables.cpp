@@ -310,6 +310,33 @@ film::Solid solid_of(const SolidTable& table, const SourceLocation& where) {
     return solid;
 }
 
+film::Wall wall_of(const WallTable& table, const SourceLocation& where) {
+    if (norm(table.normal) == 0.0) throw InputError(where, "wall.normal = [0, 0, 0] is no direction");
+    return {table.point, table.normal / norm(table.normal), table.bursts};
+}
+
+/// The bubbles that faucets let in: regions without faces behind those of the mesh, in order of time.
+void add_releases(film::Problem& problem, const FilmTables& tables, const sim::Node& root, std::uint64_t seed) {
+    for (std::size_t k = 0; k < tables.faucets.size(); ++k) {
+        const FaucetTable& faucet = tables.faucets[k];
+        if (!(faucet.radius > 0.0))
+            throw InputError(place(root, "faucet", k), "faucet.radius is missing: of its bubbles, e.g. \"1 cm\"");
+        for (int n = 0; n < faucet.count; ++n) {
+            const double u = uniform01(random_bits(seed, RandomStream::kFaucet, k, static_cast<std::uint64_t>(n)));
+            problem.releases.push_back({.time = faucet.start + n * faucet.interval,
+                                        .center = faucet.center,
+                                        .radius = faucet.radius * (1.0 + faucet.radius_spread * (2.0 * u - 1.0)),
+                                        .velocity = faucet.velocity});
+        }
+    }
+    std::stable_sort(problem.releases.begin(), problem.releases.end(),
+                     [](const auto& a, const auto& b) { return a.time < b.time; });
+    for (film::Release& release : problem.releases) {
+        release.region = static_cast<mesh::RegionId>(problem.mesh.regions.size());
+        problem.mesh.regions.push_back({RegionKind::kClosed, 4.0 / 3.0 * kPi * std::pow(release.radius, 3)});
+    }
+}
+
 /// The velocity that the scene gives to each of its bubbles; films and foams have none.
 IdVector<mesh::RegionId, Vec3> start_velocities(const FilmTables& tables, const FoamMesh& mesh) {
     IdVector<mesh::RegionId, Vec3> velocity(mesh.regions.size());
@@ -351,7 +378,9 @@ std::vector<FilmTableInfo> film_table_infos() {
             info_of<WireTable>("wire", "a wire that holds films, at rest or moving: [[wire]]", true),
             info_of<EventTable>("event", "what happens to bubbles on the way: [[event]]", true),
             info_of<VortexTable>("vortex", "what swirls in the film at the start: [[vortex]]", true),
-            info_of<SolidTable>("solid", "a ball that stirs the film: [[solid]]", true)};
+            info_of<SolidTable>("solid", "a ball that stirs the film: [[solid]]", true),
+            info_of<WallTable>("wall", "a plane that bubbles rest on: [[wall]]", true),
+            info_of<FaucetTable>("faucet", "bubbles that enter on the way: [[faucet]]", true)};
 }
 
 FilmTables read_film_tables(const sim::Node& root) {
@@ -364,7 +393,9 @@ FilmTables read_film_tables(const sim::Node& root) {
                       .wires = read_list<WireTable>(root, "wire"),
                       .events = read_list<EventTable>(root, "event"),
                       .vortices = read_list<VortexTable>(root, "vortex"),
-                      .solids = read_list<SolidTable>(root, "solid")};
+                      .solids = read_list<SolidTable>(root, "solid"),
+                      .walls = read_list<WallTable>(root, "wall"),
+                      .faucets = read_list<FaucetTable>(root, "faucet")};
     if (root.find("foam") != nullptr) tables.foams.push_back(read_one<FoamTable>(root, "foam"));
     return tables;
 }
@@ -373,7 +404,7 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
     std::vector<mesh::Ball> balls;
     for (std::size_t k = 0; k < tables.bubbles.size(); ++k)
         balls.push_back(ball_of(tables.bubbles[k], place(root, "bubble", k)));
-    if (balls.empty() && tables.films.empty() && tables.foams.empty())
+    if (balls.empty() && tables.films.empty() && tables.foams.empty() && tables.faucets.empty())
         throw InputError({root.where.file, 0, 0},
                          "the scene has no films; add a [[bubble]] with center and radius, a [[film]], or [foam]");
     std::vector<mesh::Ball> cluster;
@@ -385,6 +416,7 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
     problem.material = tables.material;
     std::vector<mesh::Ball> all = balls;
     all.insert(all.end(), cluster.begin(), cluster.end());
+    for (const FaucetTable& faucet : tables.faucets) all.push_back({faucet.center, faucet.radius});
     std::vector<io::FilmFile> files = films_of_files(tables, root);
     problem.edge_length = tables.resolution.edge_length > 0.0 ? tables.resolution.edge_length
                                                               : default_edge_length(tables, all, files);
@@ -405,8 +437,10 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
     if (!cluster.empty()) at_table(place(root, "foam", 0), "foam", [&] { add(bubbles_of(cluster, h)); });
     problem.wire_of.assign(problem.mesh.position.size(), -1);
     for (std::size_t k = 0; k < tables.wires.size(); ++k) attach(problem, tables.wires[k], place(root, "wire", k));
+    if (!problem.mesh.faces.empty())
+        mesh::require_sound(problem.mesh, root.where.file.empty() ? "the films" : root.where.file);
+    add_releases(problem, tables, root, seed);
     problem.velocity = start_velocities(tables, problem.mesh);
-    mesh::require_sound(problem.mesh, root.where.file.empty() ? "the films" : root.where.file);
 
     for (std::size_t k = 0; k < tables.tensions.size(); ++k) {
         const TensionTable& t = tables.tensions[k];
@@ -420,6 +454,8 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
         problem.vortices.push_back(vortex_of(tables.vortices[k], place(root, "vortex", k)));
     for (std::size_t k = 0; k < tables.solids.size(); ++k)
         problem.solids.push_back(solid_of(tables.solids[k], place(root, "solid", k)));
+    for (std::size_t k = 0; k < tables.walls.size(); ++k)
+        problem.walls.push_back(wall_of(tables.walls[k], place(root, "wall", k)));
     return problem;
 }
 
@@ -436,6 +472,8 @@ std::string film_tables_toml(const FilmTables& tables, double edge_length) {
     for (const EventTable& event : tables.events) text += toml_of("event", event, true);
     for (const VortexTable& vortex : tables.vortices) text += toml_of("vortex", vortex, true);
     for (const SolidTable& solid : tables.solids) text += toml_of("solid", solid, true);
+    for (const WallTable& wall : tables.walls) text += toml_of("wall", wall, true);
+    for (const FaucetTable& faucet : tables.faucets) text += toml_of("faucet", faucet, true);
     return text;
 }
 

@@ -304,6 +304,44 @@ struct SolidTable {
     }
 };
 
+/// One [[wall]]
+struct WallTable {
+    Vec3 point;
+    Vec3 normal{{0.0, 0.0, 1.0}};
+    bool bursts = false;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("point", point, sim::any_number(), {"of the plane", "length"});
+        option("normal", normal, sim::any_number(), {"toward the side where the bubbles are"});
+        option("bursts", bursts, {"true: bubbles that touch it burst; false: they rest on it, dry"});
+    }
+};
+
+/// One [[faucet]]
+struct FaucetTable {
+    Vec3 center;
+    Vec3 velocity;
+    int count = 1;
+    double radius = 0.0;
+    double radius_spread = 0.0;
+    double start = 0.0;
+    double interval = 0.0;
+
+    template <class Visitor>
+    void visit(Visitor&& option) {
+        option("center", center, sim::any_number(), {"where its bubbles enter", "length"});
+        option("velocity", velocity, sim::any_number(), {"with which they do", "length/time"});
+        option("count", count, sim::between(1, 100'000), {"how many"});
+        option("radius", radius, sim::at_least(0.0), {"of the bubbles, on average", "length"});
+        option("radius_spread", radius_spread, sim::between(0.0, 0.5),
+               {"they are evenly distributed so far below and above that, over it"});
+        option("start", start, sim::at_least(0.0), {"when the first enters", "time"});
+        option("interval", interval, sim::at_least(0.0),
+               {"between one and the next; each waits until its place is free", "time"});
+    }
+};
+
 /// All of them, as read.
 struct FilmTables {
     MaterialTable material;
@@ -316,6 +354,8 @@ struct FilmTables {
     std::vector<EventTable> events;
     std::vector<VortexTable> vortices;
     std::vector<SolidTable> solids;
+    std::vector<WallTable> walls;
+    std::vector<FaucetTable> faucets;
 };
 
 /// Their names, and how each is described: "[[bubble]]" may be there several times, "[foam]" once.

@@ -196,8 +196,6 @@ TEST(MelpSolver, RefusesFilmsAndOptionsThatItDoesNotKnow) {
     EXPECT_THROW(solver_of(ball + "[material]\nsurfactant = 2e-5\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[melp]\nfine_ratio = -1\n"), InputError);
     EXPECT_THROW(solver_of(kPair, {"resolution.edge_length=0.003"}), InputError);
-    EXPECT_THROW(solver_of("[foam]\ncount = 3\n[resolution]\nedge_length = 5e-4\n[melp]\nfine_ratio = 0\n"),
-                 InputError);
     EXPECT_NO_THROW(solver_of(kPair));
     EXPECT_NO_THROW(solver_of(ball));
 }

@@ -1,37 +1,13 @@
 // Two bubbles that have just touched settle into the standard double bubble. [method sheet 14: V2, V4]
 
-#include "lamella/linalg/dense.h"
-
 #include <gtest/gtest.h>
 
-#include "../../unit/melp/bubbles.h"
+#include "caps.h"
+#include <cstdio>
 #include <utility>
 
 namespace lamella::melp {
 namespace {
-
-struct Cap {
-    Vec3 center;
-    double radius = 0.0;
-};
-
-/// The sphere through the particles of a region that see no other bubble, by least squares: |x|^2 = 2 c . x + d.
-Cap cap_of(const MelpSolver& solver, std::int32_t region) {
-    std::vector<double> matrix(16, 0.0), right(4, 0.0);
-    const Neighbors& other = solver.geometry().neighbors.other;
-    for (std::size_t i = 0; i < solver.coarse().size(); ++i) {
-        if (solver.coarse().region[i] != region || other.begin(i) != other.end(i)) continue;
-        const Vec3& x = solver.coarse().position[i];
-        const double term[] = {2.0 * x[0], 2.0 * x[1], 2.0 * x[2], 1.0};
-        for (std::size_t a = 0; a < 4; ++a) {
-            right[a] += term[a] * squared_norm(x);
-            for (std::size_t b = 0; b < 4; ++b) matrix[4 * a + b] += term[a] * term[b];
-        }
-    }
-    const std::vector<double> z = linalg::solve_symmetric(4, matrix, right).x;
-    const Vec3 center{{z[0], z[1], z[2]}};
-    return {center, std::sqrt(z[3] + squared_norm(center))};
-}
 
 TEST(DoubleBubble, SettlesFromFirstContact) {
     auto solver = solver_of(R"(
@@ -100,15 +76,66 @@ steps_per_period = 90.0
     for (const double time : {0.03, 0.08}) {
         while (solver->time() < time) solver->advance(time);
         for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
-            const Cap p = cap_of(*solver, a), q = cap_of(*solver, b);
-            const double cosine = (p.radius * p.radius + q.radius * q.radius - squared_norm(p.center - q.center)) /
-                                  (2 * p.radius * q.radius);
-            const double angle = 180.0 - 180.0 / std::numbers::pi * std::acos(cosine);
+            const double angle = angle_between(cap_of(*solver, a), cap_of(*solver, b));
             std::printf("t %.2f caps %d and %d: %.2f degrees, spread %.2f\n", time, a, b, angle,
                         scalar(*solver, "density_spread"));
             EXPECT_NEAR(angle, 120.0, 1.2);
         }
         EXPECT_LT(scalar(*solver, "density_spread"), 0.25);
+    }
+}
+
+/// Gas volumes that end as caps of 5 and 3 cm: the partition is as curved as their pressures say. [method sheet 14: V3]
+TEST(DoubleBubble, HasThePartitionOfItsCaps) {
+    auto solver = solver_of(R"(
+[material]
+surface_tension = 0.0725
+thickness = 5e-7
+[[bubble]]
+center = [-0.0494, 0.0, 0.0]
+radius = 0.04926
+[[bubble]]
+center = [0.0263, 0.0, 0.0]
+radius = 0.02616
+[resolution]
+edge_length = 0.0026
+[melp]
+fine_ratio = 0
+theta = 1.0
+damping = 500.0
+steps_per_period = 45.0
+)");
+    solver->start({});
+    for (const double time : {0.015, 0.03, 0.045, 0.06}) {
+        while (solver->time() < time) solver->advance(time);
+        const Cap a = cap_of(*solver, 0), b = cap_of(*solver, 1);
+        const double expected = 1.0 / b.radius - 1.0 / a.radius;
+        const double pressures =
+            (solver->gas()[1].balanced - solver->gas()[0].balanced) / (2.0 * 0.0725);
+        // Where films are doubled all the way around.
+        const Vec3 axis = (b.center - a.center) / norm(b.center - a.center);
+        double wide = 0.0;
+        std::vector<double> away(solver->coarse().size());
+        std::vector<std::uint8_t> doubled(away.size(), 0);
+        const Neighbors& other = solver->geometry().neighbors.other;
+        for (std::size_t i = 0; i < away.size(); ++i) {
+            const Vec3 d = solver->coarse().position[i] - a.center;
+            away[i] = norm(d - dot(d, axis) * axis);
+            double gamma = 0.0;
+            for (std::size_t k = other.begin(i); k < other.end(i); ++k)
+                gamma += solver->geometry().area[other.index[k]] * other.weight[k];
+            doubled[i] = gamma > 0.5 ? 1 : 0;
+            if (gamma > 0.5) wide = std::max(wide, away[i]);
+        }
+        const double inner = wide - 3.0 * solver->spacing();
+        const Cap partition =
+            sphere_through(*solver, [&](std::size_t i) { return doubled[i] != 0 && away[i] < inner; });
+        std::printf("t %.3f caps %.5f %.5f curvature %.3f, from caps %.3f, from pressures %.3f; angle %.2f wide %.4f\n",
+                    time, a.radius, b.radius, 1.0 / partition.radius, expected, pressures, angle_between(a, b), wide);
+        std::fflush(stdout);
+        if (time < 0.04) continue;
+        EXPECT_NEAR(1.0 / partition.radius / expected, 1.0, 0.015);
+        EXPECT_NEAR(angle_between(a, b), 120.0, 1.2);
     }
 }
 

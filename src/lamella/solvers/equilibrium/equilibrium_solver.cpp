@@ -20,7 +20,7 @@ using mesh::RegionKind;
 EquilibriumSolver::EquilibriumSolver(const Options& options, const sim::SolverInput& input)
     : options_(options), input_(input) {
     if (!input_.films) throw InputError("the scene has no films; add a [[bubble]], [[film]] or [foam]");
-    film::refuse_punctures(*input_.films, "equilibrium");
+    film::refuse_what_melp_alone_knows(*input_.films, "equilibrium");
     if (options_.anneal_rounds > 0 && input_.films->mesh.periodic())
         throw InputError("equilibrium.anneal_rounds: a foam in a periodic box cannot change its triangles");
 }

@@ -105,15 +105,6 @@ std::vector<std::uint8_t> crowded(const Geometry& g,
     return marked;
 }
 
-void remove(CoarseParticles& coarse, std::span<const std::uint8_t> marked) {
-    CoarseParticles::for_each_column(coarse, [&](const char*, auto& column) {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < column.size(); ++i)
-            if (marked[i] == 0) column[kept++] = column[i];
-        column.resize(kept);
-    });
-}
-
 std::vector<std::uint8_t> open_hole(const CoarseParticles& coarse, FineParticles& fine, std::size_t at, double radius) {
     const Vec3 center = coarse.position[at], normal = coarse.frame_normal[at];
     const std::int32_t region = coarse.region[at];

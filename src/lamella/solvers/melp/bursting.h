@@ -47,9 +47,6 @@ std::vector<std::uint8_t> crowded(const Geometry& geometry,
                                   std::span<const std::uint8_t> burst,
                                   double spacing);
 
-/// Takes away coarse particles that are marked.
-void remove(CoarseParticles& coarse, std::span<const std::uint8_t> marked);
-
 /// Opens a hole around the coarse particle `at`: marks those of its film within `radius`, and puts fine ones that are
 /// there onto the hole's edge.
 std::vector<std::uint8_t> open_hole(const CoarseParticles& coarse, FineParticles& fine, std::size_t at, double radius);

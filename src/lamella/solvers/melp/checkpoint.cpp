@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <utility>
 
 namespace lamella::melp {
 namespace {
@@ -79,8 +80,8 @@ void MelpSolver::save(sim::StateWriter& out) const {
     std::vector<double> gas, even;
     for (const Gas& g : gas_) {
         number.push_back(g.region);
-        gas.insert(gas.end(), {g.amount, g.volume, g.calibration, g.film_radius});
-        kind.insert(kind.end(), {g.closed ? 1 : 0, g.held ? 1 : 0, g.burst ? 1 : 0});
+        gas.insert(gas.end(), {g.amount, g.volume, g.calibration, g.film_radius, g.balanced});
+        kind.insert(kind.end(), {g.closed ? 1 : 0, g.held ? 1 : 0, g.burst ? 1 : 0, g.gone ? 1 : 0});
     }
     for (const EvenFilm& film : even_) even.insert(even.end(), {film.liquid_volume, film.surfactant});
     out.write("region/number", std::span<const std::int32_t>(number));
@@ -92,14 +93,26 @@ void MelpSolver::save(sim::StateWriter& out) const {
     out.write_value("steps", steps_);
     out.write_value("step", step_);
     out.write_value("initial_liquid", initial_liquid_);
+    out.write_value("left_liquid", left_liquid_);
     out.write_value("next_event", static_cast<std::int64_t>(next_event_));
+    const std::vector<std::int32_t> released(released_.begin(), released_.end());
+    out.write("released", std::span<const std::int32_t>(released));
+    std::vector<std::int32_t> touching;
+    std::vector<double> since;
+    for (const Contact& pair : contacts_.pairs()) {
+        touching.insert(touching.end(), {pair.a, pair.b});
+        since.push_back(pair.since);
+    }
+    out.write_value("contacts", static_cast<std::int64_t>(since.size()));
+    out.write("contact/regions", std::span<const std::int32_t>(touching));
+    out.write("contact/since", std::span<const double>(since));
 }
 
 void MelpSolver::load(sim::StateReader& in) {
     coarse_ = load_columns<CoarseParticles>(in, "coarse");
     fine_ = load_columns<FineParticles>(in, "fine");
     const std::int64_t stored = in.read_integer("regions");
-    if (stored < 1 || stored > static_cast<std::int64_t>(input_.films->mesh.regions.size()))
+    if (stored < 0 || stored > static_cast<std::int64_t>(input_.films->mesh.regions.size()))
         throw InputError(fmt::format("regions = {} is no number of regions of this scene", stored));
     const auto regions = static_cast<std::size_t>(stored);
     require_regions(coarse_.region, regions, "coarse");
@@ -107,20 +120,22 @@ void MelpSolver::load(sim::StateReader& in) {
     std::vector<std::int32_t> number, kind;
     std::vector<double> gas, even;
     in.read("region/number", regions, number);
-    in.read("region/kind", 3 * regions, kind);
-    in.read("region/gas", 4 * regions, gas);
+    in.read("region/kind", 4 * regions, kind);
+    in.read("region/gas", 5 * regions, gas);
     in.read("region/even_film", 2 * regions, even);
     gas_.assign(regions, {});
     even_.assign(regions, {});
     for (std::size_t r = 0; r < regions; ++r) {
         gas_[r] = {.region = number[r],
-                   .amount = gas[4 * r],
-                   .volume = gas[4 * r + 1],
-                   .calibration = gas[4 * r + 2],
-                   .closed = kind[3 * r] != 0,
-                   .held = kind[3 * r + 1] != 0,
-                   .burst = kind[3 * r + 2] != 0,
-                   .film_radius = gas[4 * r + 3]};
+                   .amount = gas[5 * r],
+                   .volume = gas[5 * r + 1],
+                   .calibration = gas[5 * r + 2],
+                   .balanced = gas[5 * r + 4],
+                   .closed = kind[4 * r] != 0,
+                   .held = kind[4 * r + 1] != 0,
+                   .burst = kind[4 * r + 2] != 0,
+                   .gone = kind[4 * r + 3] != 0,
+                   .film_radius = gas[5 * r + 3]};
         even_[r] = {even[2 * r], even[2 * r + 1], gas_[r].held};
     }
     spacing_ = in.read_double("spacing");
@@ -133,10 +148,32 @@ void MelpSolver::load(sim::StateReader& in) {
     if (next < 0 || next > static_cast<std::int64_t>(input_.films->events.size()))
         throw InputError(fmt::format("next_event = {} is none of {} events", next, input_.films->events.size()));
     next_event_ = static_cast<std::size_t>(next);
+    left_liquid_ = in.read_double("left_liquid");
+    std::vector<std::int32_t> released;
+    in.read("released", input_.films->releases.size(), released);
+    released_.assign(released.begin(), released.end());
+    load_contacts(in);
     rims_ = start_rims(*input_.films, options_);
     set_rims(time_);
     update_shape();
+    follow_contacts(time_);
     update_liquid();
+}
+
+void MelpSolver::load_contacts(sim::StateReader& in) {
+    const std::int64_t stored = in.read_integer("contacts");
+    const auto regions = static_cast<std::int64_t>(gas_.size());
+    if (stored < 0 || stored > regions * regions)
+        throw InputError(fmt::format("contacts = {} is no number of pairs of {} regions", stored, regions));
+    const auto count = static_cast<std::size_t>(stored);
+    std::vector<std::int32_t> touching;
+    std::vector<double> since;
+    in.read("contact/regions", 2 * count, touching);
+    in.read("contact/since", count, since);
+    require_regions(touching, gas_.size(), "contact");
+    std::vector<Contact> pairs;
+    for (std::size_t k = 0; k < count; ++k) pairs.push_back({touching[2 * k], touching[2 * k + 1], since[k]});
+    contacts_.set_pairs(std::move(pairs));
 }
 
 }  // namespace lamella::melp

@@ -19,16 +19,19 @@ std::vector<double> region_areas(const Geometry& geometry, const CoarseParticles
     return area;
 }
 
-/// The uniform velocity of each region that has the momentum of its motion along the normals: the U for which
-/// sum a (u . n) n = (sum a n n^T) U. Films without a flow of their own fly with it.
-std::vector<Vec3> region_drifts(const Geometry& geometry, const CoarseParticles& coarse, std::size_t regions) {
+}  // namespace
+
+std::vector<Vec3> region_drifts(const Geometry& geometry,
+                                const CoarseParticles& coarse,
+                                std::span<const double> along_normal,
+                                std::size_t regions) {
     std::vector<std::array<double, 9>> matrix(regions);
     std::vector<std::array<double, 3>> right(regions);
     for (std::size_t e = 0; e < coarse.size(); ++e) {
         const auto r = static_cast<std::size_t>(coarse.region[e]);
         const Vec3& n = geometry.normal[e];
         for (std::size_t k = 0; k < 3; ++k) {
-            right[r][k] += geometry.area[e] * dot(coarse.velocity[e], n) * n[k];
+            right[r][k] += geometry.area[e] * along_normal[e] * n[k];
             for (std::size_t m = 0; m < 3; ++m) matrix[r][3 * k + m] += geometry.area[e] * n[k] * n[m];
         }
     }
@@ -37,8 +40,6 @@ std::vector<Vec3> region_drifts(const Geometry& geometry, const CoarseParticles&
         if (linalg::solve_positive<3>(matrix[r], right[r])) drift[r] = {{right[r][0], right[r][1], right[r][2]}};
     return drift;
 }
-
-}  // namespace
 
 Films films_of(const Geometry& geometry,
                const CoarseParticles& coarse,
@@ -50,7 +51,9 @@ Films films_of(const Geometry& geometry,
     std::vector<double> liquid(even.size(), 0.0);
     for (std::size_t e = 0; e < count; ++e)
         liquid[static_cast<std::size_t>(coarse.region[e])] += gathered.liquid_volume[e];
-    std::vector<Vec3> drift = region_drifts(geometry, coarse, even.size());
+    std::vector<double> along_normal(count);
+    for (std::size_t e = 0; e < count; ++e) along_normal[e] = dot(coarse.velocity[e], geometry.normal[e]);
+    std::vector<Vec3> drift = region_drifts(geometry, coarse, along_normal, even.size());
     for (std::size_t r = 0; r < even.size(); ++r)
         if (even[r].held) drift[r] = {};
     Films films;

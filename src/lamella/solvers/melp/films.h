@@ -4,6 +4,7 @@
 #include "lamella/solvers/melp/geometry.h"
 #include "lamella/solvers/melp/transfer.h"
 
+#include <span>
 #include <vector>
 
 namespace lamella::melp {
@@ -27,7 +28,15 @@ struct Films {
     std::size_t size() const { return thickness.size(); }
 };
 
-/// @param regions  number of regions   @param even  per region
+/// The uniform velocity of each region that has the momentum of its motion along the normals [m/s]: the U for which
+/// sum a (u . n) n = (sum a n n^T) U. Films without a flow of their own fly with it.
+/// @param along_normal  u . n per coarse particle [m/s]
+std::vector<Vec3> region_drifts(const Geometry& geometry,
+                                const CoarseParticles& coarse,
+                                std::span<const double> along_normal,
+                                std::size_t regions);
+
+/// @param even  per region
 Films films_of(const Geometry& geometry,
                const CoarseParticles& coarse,
                const Gathered& gathered,

@@ -98,6 +98,7 @@ void MelpSolver::apply_events() {
 }
 
 void MelpSolver::apply(const film::Event& event) {
+    if (is_foam()) return pop(event);
     std::size_t at = coarse_.size();
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < coarse_.size(); ++i) {

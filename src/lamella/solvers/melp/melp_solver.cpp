@@ -7,6 +7,7 @@
 #include "lamella/solvers/melp/operators.h"
 #include "lamella/solvers/melp/redistribution.h"
 #include "lamella/solvers/melp/start.h"
+#include "lamella/solvers/melp/volumes.h"
 
 #include <fmt/format.h>
 
@@ -37,6 +38,7 @@ MelpSolver::MelpSolver(const Options& options, const sim::SolverInput& input) : 
             "material.surface_tension = {:.3g} N/m: where a film has twice the surfactant it would have no tension",
             film::elasticity(material), law_.reference_concentration, law_.reference_tension));
     refuse_unknown_films(*input_.films, options_);
+    contacts_ = Contacts({options_.joining, options_.joining_delay});
 }
 
 void MelpSolver::start(const sim::StartContext&) {
@@ -51,7 +53,9 @@ void MelpSolver::start(const sim::StartContext&) {
     sort_fine_particles(fine_, spacing_);
     update_shape();
     even_out_layout();
-    const std::vector<double> volume = particle_volumes(coarse_, geometry_, rims_now_, gas_);
+    contacts_.start_joined(start.joined);
+    follow_contacts(0.0);
+    const std::vector<double> volume = particle_volumes(coarse_, geometry_, rims_now_, gas_, joined_);
     for (std::size_t r = 0; r < gas_.size(); ++r)
         if (gas_[r].closed) gas_[r].calibration = gas_[r].volume / volume[r];
     update_liquid();
@@ -59,6 +63,7 @@ void MelpSolver::start(const sim::StartContext&) {
     update_liquid();
     for (const double v : fine_.liquid_volume) initial_liquid_ += v;
     for (const EvenFilm& film : even_) initial_liquid_ += film.liquid_volume;
+    release_bubbles();
     apply_events();
 }
 
@@ -79,17 +84,26 @@ void MelpSolver::even_out_layout() {
 sim::StepReport MelpSolver::advance(double time_limit) {
     const auto& events = input_.films->events;
     if (next_event_ < events.size()) time_limit = std::min(time_limit, events[next_event_].time);
-    const double dt = choose_step(time_limit);
+    time_limit = std::min(time_limit, next_release());
+    double dt = choose_step(time_limit);
     const std::vector<Vec3> velocity_before = coarse_.velocity;
     const std::vector<Gas> gas_before = gas_;
-    const SurfactantStep surfactant = push_along_film(dt);
-    const NormalStep normal = push_along_normals(dt);
-    if (const std::string fault = fault_of_step(); !fault.empty()) {
+    SurfactantStep surfactant;
+    NormalStep normal;
+    for (int attempt = 0;; ++attempt) {
+        surfactant = push_along_film(dt);
+        normal = push_along_normals(dt);
+        const std::string fault = fault_of_step();
+        const double shorter = fault.empty() ? shorter_step(dt) : dt;
+        constexpr int kMostAttempts = 8;
+        if (fault.empty() && (shorter == dt || attempt == kMostAttempts)) break;
         coarse_.velocity = velocity_before;
         gas_ = gas_before;
-        throw NumericalError(
-            fmt::format("melp: step {} of {:.3g} s from time {:.6g} s: {}; a smaller melp.cfl or theta = 1 may help",
-                        steps_ + 1, dt, time_, fault));
+        if (!fault.empty())
+            throw NumericalError(fmt::format(
+                "melp: step {} of {:.3g} s from time {:.6g} s: {}; a smaller melp.cfl or theta = 1 may help",
+                steps_ + 1, dt, time_, fault));
+        dt = shorter;
     }
     const std::vector<Vec3> momentum = region_momenta(coarse_.velocity);
     filter_short_waves();
@@ -100,14 +114,17 @@ sim::StepReport MelpSolver::advance(double time_limit) {
     update_shape();
     move_fine(dt);
     clear_edges();
+    time_ = dt >= time_limit - time_ ? time_limit : time_ + dt;
+    follow_contacts(time_);
     update_liquid();
     give_back(momentum);
     follow_particle_volumes(dt);
     vent(dt);
-    time_ = dt >= time_limit - time_ ? time_limit : time_ + dt;
     step_ = dt;
     ++steps_;
+    burst_on_walls();
     apply_events();
+    release_bubbles();
     return {.step = dt,
             .evaluations = 1,
             .iterations = surfactant.solution.iterations + normal.solution.iterations,
@@ -128,6 +145,16 @@ double MelpSolver::choose_step(double time_limit) const {
     const double left = time_limit - time_;
     if (left <= dt) return left;
     return left < 2.0 * dt ? 0.5 * left : dt;  // no crumb of a step before an output
+}
+
+/// A step in which films have come to move as far as planned: tension that nothing balances, where films have just
+/// joined or burst, shows only in the velocities after it. The same step where they do not move much farther already.
+double MelpSolver::shorter_step(double dt) const {
+    constexpr double kMuchFarther = 2.0, kShortest = 0.2;
+    double fastest = 0.0;
+    for (const Vec3& u : coarse_.velocity) fastest = std::max(fastest, norm(u));
+    const double planned = options_.cfl * spacing_;
+    return fastest * dt <= kMuchFarther * planned ? dt : dt * std::max(planned / (fastest * dt), kShortest);
 }
 
 /// Largest acceleration by gravity and surfactant now [m/s^2]: liquid at rest may have it all before it.
@@ -193,6 +220,8 @@ NormalStep MelpSolver::push_along_normals(double dt) {
                                           .geometry = geometry_,
                                           .gas = gas_,
                                           .rims = rims_now_,
+                                          .walls = input_.films->walls,
+                                          .joined = joined_,
                                           .outside_pressure = options_.outside_pressure,
                                           .mass = mass,
                                           .interface_tension = films_.tension,
@@ -202,12 +231,16 @@ NormalStep MelpSolver::push_along_normals(double dt) {
                                           .floating = options_.floating,
                                           .junction_correction = options_.junction_correction,
                                           .damping = options_.damping,
+                                          .shape_damping = options_.shape_damping,
                                           .theta = theta_of(dt),
                                           .dt = dt,
                                           .tolerance = options_.solver_tolerance});
     for (std::size_t i = 0; i < count; ++i) coarse_.velocity[i] += (step.velocity[i] - before[i]) * geometry_.normal[i];
-    for (std::size_t r = 0; r < gas_.size(); ++r)
-        if (gas_[r].closed) gas_[r].volume += step.swept[r];
+    for (std::size_t r = 0; r < gas_.size(); ++r) {
+        if (!gas_[r].closed) continue;
+        gas_[r].volume += step.swept[r];
+        gas_[r].balanced = gas_[r].gauge_pressure(options_.outside_pressure);
+    }
     return step;
 }
 
@@ -350,6 +383,11 @@ void MelpSolver::keep_coarse_inside() {
 
 void MelpSolver::update_shape() { geometry_ = geometry_of(coarse_, support_radius(), rims_now_); }
 
+void MelpSolver::follow_contacts(double time) {
+    contacts_.update(geometry_.neighbors.other, coarse_.region, time);
+    joined_ = contacts_.joined(geometry_.neighbors.other, coarse_.region, time);
+}
+
 void MelpSolver::update_liquid() {
     transfer_.emplace(coarse_, geometry_.normal, fine_, support_radius());
     films_ = films_of(geometry_, coarse_, transfer_->to_coarse(coarse_, fine_), even_, law_);
@@ -366,7 +404,7 @@ void MelpSolver::update_liquid() {
 /// follow the sums slowly. [method sheet 16.2]
 void MelpSolver::follow_particle_volumes(double dt) {
     const double share = -std::expm1(-options_.volume_rate * dt);
-    const std::vector<double> volume = particle_volumes(coarse_, geometry_, rims_now_, gas_);
+    const std::vector<double> volume = particle_volumes(coarse_, geometry_, rims_now_, gas_, joined_);
     for (std::size_t r = 0; r < gas_.size(); ++r)
         if (gas_[r].closed && !gas_[r].burst) gas_[r].volume += share * (volume[r] - gas_[r].volume);
 }
@@ -387,9 +425,9 @@ double MelpSolver::slowest_period(const std::vector<Gas>& bubbles) const {
     const film::Material& material = input_.films->material;
     double shortest = std::numeric_limits<double>::infinity();
     for (const Gas& gas : bubbles) {
+        if (gas.gone) continue;
         const double radius = gas.radius();
-        const double mass =
-            liquid_density() * material.thickness + options_.air_mass * material.air_density * radius;
+        const double mass = liquid_density() * material.thickness + options_.air_mass * material.air_density * radius;
         constexpr double kDrum = 2.404825557695773;  // first zero of the Bessel function J_0
         const double wave = gas.closed ? std::numbers::pi : 2.0 * std::numbers::pi / kDrum;
         shortest = std::min(shortest, wave * radius * std::sqrt(mass / material.film_tension()));

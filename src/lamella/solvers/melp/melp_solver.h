@@ -2,6 +2,7 @@
 
 #include "lamella/sim/registry.h"
 #include "lamella/sim/solver.h"
+#include "lamella/solvers/melp/contacts.h"
 #include "lamella/solvers/melp/films.h"
 #include "lamella/solvers/melp/normal_motion.h"
 #include "lamella/solvers/melp/options.h"
@@ -54,6 +55,7 @@ private:
     double slowest_period(const std::vector<Gas>& bubbles) const;
     // The stages of a step, in order.
     double choose_step(double time_limit) const;
+    double shorter_step(double dt) const;
     double strongest_pull() const;
     double fastest_edge() const;
     double theta_of(double dt) const;
@@ -70,6 +72,21 @@ private:
     void apply_events();
     void apply(const film::Event& event);
     void burst(std::size_t at, double radius, const std::string& kind);
+    // Foams.
+    bool is_foam() const;
+    std::optional<std::size_t> place_of(mesh::RegionId region) const;
+    std::optional<std::size_t> random_outer_bubble() const;
+    void pop(const film::Event& event);
+    void delete_bubble(std::size_t r);
+    void hand_over_even_film(std::size_t r, std::size_t i);
+    void join_bubbles(std::size_t from, std::size_t into);
+    void renew_after_change();
+    void burst_on_walls();
+    bool is_free(const film::Release& release) const;
+    void release_bubbles();
+    double next_release() const;
+    void follow_contacts(double time);
+    void load_contacts(sim::StateReader& in);
     std::vector<std::uint8_t> burst_regions() const;
     bool any_burst() const;
     void set_rims(double time);
@@ -100,13 +117,17 @@ private:
     double time_ = 0.0;
     std::int64_t steps_ = 0;
     double step_ = 0.0;            ///< the last one
-    double initial_liquid_ = 0.0;  ///< [m^3]
+    double initial_liquid_ = 0.0;  ///< and what has entered since [m^3]
+    double left_liquid_ = 0.0;     ///< with bubbles of a foam that burst [m^3]
     std::size_t next_event_ = 0;
+    std::vector<std::uint8_t> released_;  ///< per bubble of the faucets: it has entered
+    Contacts contacts_;
     std::vector<sim::Event> events_;
 
     // What follows from the above: set by set_rims, update_shape and update_liquid.
     std::vector<RimPiece> rims_now_;
     Geometry geometry_;
+    std::vector<double> joined_;  ///< per entry of the neighbors in other regions: see Contacts
     std::optional<Transfer> transfer_;
     Films films_;
     // Forces of this step that films exert on each other along themselves. [N]

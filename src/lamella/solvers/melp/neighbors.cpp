@@ -47,7 +47,6 @@ NeighborLists find_neighbors(std::span<const Vec3> position,
                              std::span<const std::int32_t> region,
                              double support_radius) {
     const PointGrid grid(position, 0.5 * support_radius);
-    const double reach = support_radius * support_radius;
     constexpr std::size_t kBlock = 256;
     const std::size_t count = position.size();
     std::vector<Rows> same((count + kBlock - 1) / kBlock), other(same.size());
@@ -60,8 +59,8 @@ NeighborLists find_neighbors(std::span<const Vec3> position,
         };
         for (std::size_t i = first; i < last; ++i) {
             const std::size_t mine_begin = mine.index.size(), theirs_begin = theirs.index.size();
-            grid.for_each_near(position[i], support_radius, [&](std::uint32_t j) {
-                if (j == i || squared_norm(position[i] - position[j]) >= reach) return;
+            grid.for_each_within(position[i], support_radius, [&](std::uint32_t j, double) {
+                if (j == i) return;
                 if (region[i] != region[j])
                     theirs.index.push_back(j);
                 else if (dot(normal[i], normal[j]) > kAgreeing)

@@ -2,6 +2,7 @@
 
 #include "lamella/core/parallel.h"
 #include "lamella/linalg/dense.h"
+#include "lamella/solvers/melp/films.h"
 
 #include <algorithm>
 #include <array>
@@ -34,7 +35,51 @@ struct Pairs {
     std::vector<double> same;   ///< per entry of neighbors.same
     std::vector<double> other;  ///< per entry of neighbors.other
     std::vector<double> image;  ///< per entry of images
+    std::vector<double> push;   ///< per entry of neighbors.other: of the springs that keep films apart, along normals
 };
+
+/// What keeps films that fly at each other from passing through, as a spring along the normals of a pair: it is
+/// strained where particle i stands deeper in the other bubble than films may. Gas alone presses joined films a quarter
+/// of a spacing into each other; those that have not joined keep a spacing of air between them.
+struct Spring {
+    double stiffness = 0.0;  ///< force along n_i over the velocity along n_i, or along n_j, times the time [N/m]
+    double force = 0.0;      ///< along n_i, into the own bubble [N]
+};
+constexpr double kStiff = 36.0;  // of these springs and of walls, tension / support radius^2
+
+Spring spring_between(const NormalProblem& p, std::size_t i, std::size_t k) {
+    constexpr double kJoined = 0.5 / 3.0, kApart = -1.0 / 3.0;  // support radii, which are 3 spacings by default
+    const Neighbors& other = p.geometry.neighbors.other;
+    const std::size_t j = other.index[k];
+    const double cosine = dot(p.geometry.normal[i], p.geometry.normal[j]);
+    if (cosine > 0.0) return {};  // films that do not face each other
+    const Vec3 between = (p.geometry.normal[i] - p.geometry.normal[j]) / std::sqrt(2.0 - 2.0 * cosine);
+    const double reach = other.kernel.support_radius;
+    const double share = p.joined.empty() ? 1.0 : p.joined[k];
+    const double free = reach * (share * kJoined + (1.0 - share) * kApart);
+    const double depth = dot(p.coarse.position[i] - p.coarse.position[j], between) - free;
+    if (depth <= 0.0) return {};
+    const double tension = p.interface_tension[i] + p.interface_tension[j];
+    const double along = std::sqrt(0.5 * (1.0 - cosine));  // between . n_i
+    const double pressure = kStiff * tension / (reach * reach) * other.weight[k];
+    const double area = p.geometry.area[i] * p.geometry.area[j];
+    return {area * pressure * along * along, area * pressure * along * depth};
+}
+
+/// The springs of all walls on one particle.
+Spring spring_of_walls(const NormalProblem& p, std::size_t i) {
+    const double reach = p.geometry.neighbors.same.kernel.support_radius;
+    Spring all;
+    for (const film::Wall& wall : p.walls) {
+        const double depth = dot(wall.point - p.coarse.position[i], wall.normal);
+        if (depth <= 0.0) continue;
+        const double along = dot(wall.normal, p.geometry.normal[i]);
+        const double stiffness = p.geometry.area[i] * kStiff * 2.0 * p.interface_tension[i] / (reach * reach);
+        all.stiffness += stiffness * along * along;
+        all.force += stiffness * along * depth;
+    }
+    return all;
+}
 
 Pairs pair_strengths(const NormalProblem& p) {
     const Neighbors& same = p.geometry.neighbors.same;
@@ -46,10 +91,12 @@ Pairs pair_strengths(const NormalProblem& p) {
     pairs.same.resize(same.index.size());
     pairs.other.resize(other.index.size());
     pairs.image.resize(images.index.size());
+    pairs.push.resize(other.index.size());
     std::vector<double> toward(a.size());  // sigma f'
     parallel_for(a.size(), [&](std::size_t i) {
         double gamma = 0.0;
-        for (std::size_t k = other.begin(i); k < other.end(i); ++k) gamma += a[other.index[k]] * other.weight[k];
+        for (std::size_t k = other.begin(i); k < other.end(i); ++k)
+            gamma += (p.joined.empty() ? 1.0 : p.joined[k]) * a[other.index[k]] * other.weight[k];
         const Cohesion c = cohesion(gamma, p.junction_correction);
         pairs.own[i] = p.interface_tension[i] * c.own;
         toward[i] = p.interface_tension[i] * c.other;
@@ -60,26 +107,13 @@ Pairs pair_strengths(const NormalProblem& p) {
             return 0.5 * (tension[i] + tension[j]) * (a[i] * a[j]) * list.laplacian[k];
         };
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) pairs.same[k] = strength(same, k, pairs.own);
-        for (std::size_t k = other.begin(i); k < other.end(i); ++k) pairs.other[k] = strength(other, k, toward);
+        for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
+            pairs.other[k] = (p.joined.empty() ? 1.0 : p.joined[k]) * strength(other, k, toward);
+            pairs.push[k] = spring_between(p, i, k).stiffness;
+        }
         for (std::size_t k = images.begin(i); k < images.end(i); ++k) pairs.image[k] = strength(images, k, pairs.own);
     });
     return pairs;
-}
-
-/// What keeps films that fly at each other from passing through, as a pair: a stiff push back where particle i stands
-/// deeper than half a spacing in the other bubble [N / m^2, times the areas a force]. Gas alone presses films a quarter
-/// of a spacing into each other.
-Vec3 push_apart(const NormalProblem& p, std::size_t i, std::size_t j, double weight) {
-    constexpr double kFree = 0.5 / 3.0;  // support radii, which are 3 spacings unless asked for otherwise
-    constexpr double kStiff = 36.0;      // tension / support radius^2
-    const Vec3 between = p.geometry.normal[i] - p.geometry.normal[j];
-    const double square = squared_norm(between);
-    if (square < 2.0) return {};  // films that do not face each other
-    const double reach = p.geometry.neighbors.other.kernel.support_radius;
-    const double depth = dot(p.coarse.position[i] - p.coarse.position[j], between) / std::sqrt(square) - kFree * reach;
-    if (depth <= 0.0) return {};
-    const double tension = p.interface_tension[i] + p.interface_tension[j];
-    return (-kStiff * tension / (reach * reach) * depth * weight / std::sqrt(square)) * between;
 }
 
 /// Tension, cohesion and gas pressure along the normals. [N]
@@ -89,17 +123,17 @@ std::vector<double> forces(const NormalProblem& p, const Pairs& pairs, const std
     std::vector<double> force(g.size());
     parallel_for(g.size(), [&](std::size_t i) {
         Vec3 pull;
+        double push = p.gas[region_of(p.coarse, i)].gauge_pressure(p.outside_pressure) * gas_area[i];
         const Neighbors& same = g.neighbors.same;
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) pull += pairs.same[k] * (x[same.index[k]] - x[i]);
         const Neighbors& other = g.neighbors.other;
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
-            const std::size_t j = other.index[k];
-            pull += pairs.other[k] * (x[j] - x[i]) + (g.area[i] * g.area[j]) * push_apart(p, i, j, other.weight[k]);
+            pull += pairs.other[k] * (x[other.index[k]] - x[i]);
+            if (pairs.push[k] > 0.0) push -= spring_between(p, i, k).force;
         }
         const Images& images = g.images;
         for (std::size_t k = images.begin(i); k < images.end(i); ++k) pull += pairs.image[k] * (images.place[k] - x[i]);
-        force[i] =
-            dot(pull, g.normal[i]) + p.gas[region_of(p.coarse, i)].gauge_pressure(p.outside_pressure) * gas_area[i];
+        force[i] = dot(pull, g.normal[i]) + push;
     });
     return force;
 }
@@ -257,7 +291,8 @@ std::vector<double> gas_areas(const NormalProblem& p) {
 /// How forces of tension and cohesion change with velocities along the normals.
 class FilmStiffness {
 public:
-    FilmStiffness(const NormalProblem& p, const Pairs& pairs) : p_(p), pairs_(pairs), diagonal_(p.coarse.size()) {
+    FilmStiffness(const NormalProblem& p, const Pairs& pairs)
+        : p_(p), pairs_(pairs), diagonal_(p.coarse.size()), other_(pairs.other.size()) {
         const Neighbors& same = p.geometry.neighbors.same;
         const Neighbors& other = p.geometry.neighbors.other;
         const std::vector<Vec3>& n = p.geometry.normal;
@@ -267,7 +302,10 @@ public:
             double sum = 0.0;
             for (std::size_t k = same.begin(i); k < same.end(i); ++k)
                 sum -= pairs.same[k] * (free ? dot(n[i], n[same.index[k]]) : 1.0);
-            for (std::size_t k = other.begin(i); k < other.end(i); ++k) sum -= pairs.other[k];
+            for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
+                sum -= pairs.other[k] + pairs.push[k];
+                other_[k] = pairs.other[k] * dot(n[i], n[other.index[k]]) - pairs.push[k];
+            }
             const Images& images = p.geometry.images;
             for (std::size_t k = images.begin(i); k < images.end(i); ++k)
                 sum -= pairs.image[k] * dot(n[i], images.normal[k]);
@@ -282,11 +320,9 @@ public:
     double apply(const Values& v, std::size_t i) const {
         const Neighbors& same = p_.geometry.neighbors.same;
         const Neighbors& other = p_.geometry.neighbors.other;
-        const std::vector<Vec3>& n = p_.geometry.normal;
         double sum = diagonal_[i] * v[i];
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum += pairs_.same[k] * v[same.index[k]];
-        for (std::size_t k = other.begin(i); k < other.end(i); ++k)
-            sum += pairs_.other[k] * dot(n[i], n[other.index[k]]) * v[other.index[k]];
+        for (std::size_t k = other.begin(i); k < other.end(i); ++k) sum += other_[k] * v[other.index[k]];
         const Images& images = p_.geometry.images;
         for (std::size_t k = images.begin(i); k < images.end(i); ++k)
             sum += pairs_.image[k] * images.mirrors[images.mirror[k]].sign * v[images.index[k]];
@@ -306,6 +342,7 @@ private:
     const NormalProblem& p_;
     const Pairs& pairs_;
     std::vector<double> diagonal_;
+    std::vector<double> other_;  // per entry of neighbors.other
 };
 
 /// sum of a v over each region: how fast its gas grows [m^3/s].
@@ -333,10 +370,15 @@ NormalStep move_along_normals(const NormalProblem& p) {
     for (std::size_t r = 0; r < gas.size(); ++r)
         gas[r] = p.gas[r].closed ? p.dt * p.dt * p.gas[r].amount / (p.gas[r].volume * p.gas[r].volume) : 0.0;
     std::vector<double> inertia(count), given(count), right(count), scale(count);
+    const std::vector<Vec3> flight = p.shape_damping > 0.0
+                                         ? region_drifts(p.geometry, p.coarse, p.velocity, p.gas.size())
+                                         : std::vector<Vec3>(p.gas.size());
     parallel_for(count, [&](std::size_t i) {
         const double a = gas_area[i];
-        inertia[i] = p.mass[i] * (1.0 + p.dt * p.damping);
-        given[i] = p.mass[i] * p.velocity[i] + p.dt * (force[i] + dot(p.external[i], p.geometry.normal[i]));
+        const Spring walls = spring_of_walls(p, i);
+        const Vec3 outer = p.external[i] + (p.shape_damping * p.mass[i]) * flight[region_of(p.coarse, i)];
+        inertia[i] = p.mass[i] * (1.0 + p.dt * (p.damping + p.shape_damping)) + p.dt * p.dt * walls.stiffness;
+        given[i] = p.mass[i] * p.velocity[i] + p.dt * (force[i] + dot(outer, p.geometry.normal[i]) + walls.force);
         right[i] = given[i] + mixed * stiffness.apply(p.velocity, i) + p.theta * p.dt * p.dt * stiffness.of_rims(i);
         scale[i] = 1.0 / (inertia[i] - implicit * stiffness.diagonal(i) + gas[region_of(p.coarse, i)] * a * a);
     });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lamella/film/problem.h"
 #include "lamella/linalg/conjugate_gradient.h"
 #include "lamella/solvers/melp/geometry.h"
 #include "lamella/solvers/melp/particles.h"
@@ -15,6 +16,8 @@ struct NormalProblem {
     const Geometry& geometry;
     std::span<const Gas> gas;                   ///< per region
     std::span<const RimPiece> rims;             ///< that hold films, now
+    std::span<const film::Wall> walls;          ///< that films do not pass
+    std::span<const double> joined;             ///< per entry of neighbors.other: see Contacts; empty: all have
     double outside_pressure;                    ///< [Pa]
     std::span<const double> mass;               ///< [kg]
     std::span<const double> interface_tension;  ///< sigma of one interface [N/m]
@@ -23,7 +26,8 @@ struct NormalProblem {
     std::span<const Vec3> external;             ///< forces from outside, e.g. weight [N]
     bool floating;                              ///< the air carries the external forces on free bubbles as a whole
     double junction_correction;                 ///< beta of the cohesion
-    double damping;                             ///< [1/s]
+    double damping;                             ///< of all motion along the normals [1/s]
+    double shape_damping;                       ///< of what is no flight of a region as a whole [1/s]
     double theta;
     double dt;         ///< [s]
     double tolerance;  ///< of the linear solve
@@ -53,6 +57,9 @@ struct NormalStep {
 /// Regions cohere where their films touch [method sheet 16.4, eq. 11]: two films have the tension of one in common, and
 /// meet a third at 120 degrees. Internal forces, `internal` along the film counted, neither push nor twist a free
 /// cluster as a whole: what discretization leaves is removed.
+///
+/// Films that face each other too deep push each other back, and walls push films back, as stiff springs: both are in
+/// the matrix.
 NormalStep move_along_normals(const NormalProblem& problem);
 
 /// The tension of the particle's own film and that toward other regions, per interface tension, where gamma of film of

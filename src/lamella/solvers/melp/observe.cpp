@@ -1,10 +1,12 @@
 // What can be seen of films made of particles.
 
 #include "lamella/solvers/melp/film_ends.h"
+#include "lamella/solvers/melp/foam.h"
 #include "lamella/solvers/melp/melp_solver.h"
 #include "lamella/solvers/melp/redistribution.h"
 #include "lamella/solvers/melp/start.h"
 #include "lamella/solvers/melp/surface.h"
+#include "lamella/solvers/melp/volumes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,7 +78,7 @@ sim::Surface MelpSolver::surface() const {
         closed.values[r] = 1.0;
         target.values[r] = input_.films->mesh.regions[static_cast<mesh::RegionId>(r)].target_volume;
         if (gas.held) target.values[r] = gas.amount / options_.outside_pressure;  // half a bubble: the scene names none
-        pressure.values[r] = gas.gauge_pressure(options_.outside_pressure);
+        pressure.values[r] = gas.balanced;
     }
     surface.region_fields = {std::move(closed), std::move(target), std::move(pressure)};
     return surface;
@@ -139,7 +141,7 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
                                   return total + film.surfactant;
                               });
     double gas = 0.0, volume_error = 0.0;
-    const std::vector<double> volume = particle_volumes(coarse_, geometry_, rims_now_, gas_);
+    const std::vector<double> volume = particle_volumes(coarse_, geometry_, rims_now_, gas_, joined_);
     for (std::size_t r = 0; r < gas_.size(); ++r) {
         if (!gas_[r].closed) continue;
         gas += volume[r];
@@ -153,7 +155,9 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
         {"particle_volume", "m^3", gas, "of all bubbles, summed over coarse particles"},
         {"swept_volume_error", "-", volume_error, "largest relative difference of that and what the films have swept"},
         {"liquid_mass", "kg", liquid_density() * liquid, "of all films"},
-        {"liquid_error", "-", initial_liquid_ > 0.0 ? liquid / initial_liquid_ - 1.0 : 0.0, "relative to the start"},
+        {"liquid_left", "kg", liquid_density() * left_liquid_, "with bubbles of a foam that have burst"},
+        {"liquid_error", "-", initial_liquid_ > 0.0 ? (liquid + left_liquid_) / initial_liquid_ - 1.0 : 0.0,
+         "of both together, relative to the start and what has entered since"},
         {"surfactant_amount", "mol", surfactant, "of one interface of all films"},
         {"momentum_x", "kg m/s", momentum[0], "of the films"},
         {"momentum_y", "kg m/s", momentum[1], "of the films"},
@@ -170,13 +174,18 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
          "(largest - smallest) / mean of coarse particles per area"},
         {"strays", "-", static_cast<double>(transfer_ ? transfer_->strays() : 0),
          "fine particles that no coarse one reaches"},
+        {"flipped_normals", "-", static_cast<double>(flipped_normals(coarse_, geometry_, gas_, spacing_)),
+         "coarse particles whose normal disagrees with those next to them"},
+        {"bubbles", "-",
+         static_cast<double>(std::count_if(gas_.begin(), gas_.end(), [](const Gas& g) { return g.closed; })),
+         "with gas of their own"},
         {"coarse_particles", "-", static_cast<double>(coarse_.size()), "that carry the shape"},
         {"fine_particles", "-", static_cast<double>(fine_.size()), "that are the liquid"},
     };
     constexpr std::size_t kMostBubbles = 12;
     for (std::size_t r = 0; r < std::min(gas_.size(), kMostBubbles); ++r)
-        scalars.push_back({"gauge_pressure_" + std::to_string(gas_[r].region), "Pa",
-                           gas_[r].gauge_pressure(options_.outside_pressure), "of its gas, above the outside"});
+        scalars.push_back({"gauge_pressure_" + std::to_string(gas_[r].region), "Pa", gas_[r].balanced,
+                           "of its gas, above the outside"});
     return scalars;
 }
 

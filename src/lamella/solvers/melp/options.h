@@ -65,8 +65,11 @@ struct Options {
     Vec3 wind;
     bool floating = false;
     double damping = 0.0;
+    double shape_damping = 0.0;
     double grid_filter = 0.1;
     double junction_correction = 0.3;
+    bool joining = true;
+    double joining_delay = 0.0;
     bool redistribution = true;
     double volume_rate = 20.0;
     double thickness_rate = 0.2;
@@ -109,12 +112,19 @@ struct Options {
                {"the air carries the weight of free bubbles, by forces along the normals: they drain and do not fall"});
         option("damping", damping, sim::at_least(0.0),
                {"rate at which the motion along normals decays: to settle", "1/time"});
+        option("shape_damping", shape_damping, sim::at_least(0.0),
+               {"the same of all motion along normals that is no flight of a bubble as a whole", "1/time"});
         option("grid_filter", grid_filter, sim::between(0.0, 1.0),
                {"share of the motion along normals that the shortest waves between particles lose per step; bubbles "
                 "that fly or swing lose next to nothing"});
         option("junction_correction", junction_correction, sim::between(0.0, 1.0),
                {"beta of the cohesion between bubbles: cancels the tension of the blurred line where films meet", "-",
                 "[method sheet 16.4]"});
+        option("joining", joining,
+               {"false: bubbles that touch never join, a spacing of air stays between their films"});
+        option("joining_delay", joining_delay, sim::at_least(0.0),
+               {"from the first contact until films begin to join; a fifth of it later they have", "time",
+                "[Deng22]: a threshold"});
         option("redistribution", redistribution, {"coarse particles are kept evenly spread"});
         option("volume_rate", volume_rate, sim::at_least(0.0),
                {"at which the gas volume that films have swept follows the particles' own", "1/time",

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <span>
 #include <vector>
 
 namespace lamella::melp {
@@ -65,9 +66,11 @@ struct Gas {
     double amount = 0.0;       ///< pressure * volume, constant [J]
     double volume = 0.0;       ///< what the films have swept; follows the particles' own volume slowly [m^3]
     double calibration = 1.0;  ///< true volume at the start / the particles' own volume then
+    double balanced = 0.0;     ///< gauge pressure that the films have moved to in the last step: what is reported [Pa]
     bool closed = true;        ///< false: a film on a wire or one that has burst, the same air on both sides
     bool held = false;         ///< by rims: it does not fly
     bool burst = false;        ///< its film has a hole
+    bool gone = false;         ///< it has burst at once, or is a part of another bubble now
     double film_radius = 0.0;  ///< of the disk that has the area of a film without gas [m]
 
     /// Above that of the outside air [Pa].
@@ -76,5 +79,16 @@ struct Gas {
     /// Of the bubble, or of half a one on a plate, or of a disk as large as an open film [m].
     double radius() const { return closed ? std::cbrt((held ? 1.5 : 0.75) * volume / std::numbers::pi) : film_radius; }
 };
+
+/// Takes away particles that are marked.
+template <class Particles>
+void remove(Particles& particles, std::span<const std::uint8_t> marked) {
+    Particles::for_each_column(particles, [&](const char*, auto& column) {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < column.size(); ++i)
+            if (marked[i] == 0) column[kept++] = column[i];
+        column.resize(kept);
+    });
+}
 
 }  // namespace lamella::melp

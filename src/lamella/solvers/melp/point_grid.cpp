@@ -30,6 +30,8 @@ PointGrid::PointGrid(std::span<const Vec3> position, double cell_edge) {
     }
     const std::array<const double*, 3> columns{column[0].data(), column[1].data(), column[2].data()};
     grid_.emplace(box, columns, position.size(), cell_edge);
+    sorted_.resize(position.size());
+    parallel_for(position.size(), [&](std::size_t k) { sorted_[k] = position[grid_->order()[k]]; });
 }
 
 }  // namespace lamella::melp

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace lamella::melp {
 
@@ -24,8 +25,22 @@ public:
         });
     }
 
+    /// Calls visit(index, squared distance) for every point nearer to `center` than `radius`.
+    template <class Visit>
+    void for_each_within(const Vec3& center, double radius, Visit&& visit) const {
+        if (!grid_) return;
+        const double most = radius * radius;
+        grid_->for_each_range(center - low_, radius, [&](std::uint32_t begin, std::uint32_t end) {
+            for (std::uint32_t k = begin; k < end; ++k) {
+                const double square = squared_norm(sorted_[k] - center);
+                if (square < most) visit(grid_->order()[k], square);
+            }
+        });
+    }
+
 private:
-    Vec3 low_;  ///< lower corner of the points
+    Vec3 low_;                  ///< lower corner of the points
+    std::vector<Vec3> sorted_;  ///< the points in the order of the grid
     std::optional<spatial::CellGrid<3>> grid_;
 };
 

@@ -1,12 +1,11 @@
 #include "lamella/solvers/melp/start.h"
 
 #include "lamella/core/error.h"
-#include "lamella/core/parallel.h"
 #include "lamella/film/noise.h"
 #include "lamella/film/surfactant.h"
 #include "lamella/mesh/volume.h"
+#include "lamella/solvers/melp/bubble_shapes.h"
 #include "lamella/solvers/melp/open_films.h"
-#include "lamella/solvers/melp/surface.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +18,7 @@
 namespace lamella::melp {
 namespace {
 
-using mesh::FaceId;
+using mesh::Ball;
 using mesh::FoamMesh;
 using mesh::RegionId;
 using mesh::RegionKind;
@@ -46,65 +45,6 @@ void refuse_coarse_contacts(const film::Problem& films) {
     }
 }
 
-/// Balls that overlap at the start are meshed as cells of up to twice their volume: gas would burst out of them.
-void refuse_wrong_volumes(const film::Problem& films) {
-    constexpr double kFarthest = 0.1;
-    const IdVector<RegionId, double> volume = mesh::region_volumes(films.mesh);
-    for (const RegionId r : films.mesh.regions.ids()) {
-        const mesh::Region& region = films.mesh.regions[r];
-        if (region.kind == RegionKind::kClosed && std::abs(volume[r] / region.target_volume - 1.0) > kFarthest)
-            throw InputError(
-                fmt::format("melp: bubble {} would start with {:.3g} times its volume, as bubbles that overlap at the "
-                            "start do; put them a hundredth of a radius apart, they join by themselves",
-                            index(r), volume[r] / region.target_volume));
-    }
-}
-
-/// The surface of one closed region.
-struct RegionSurface {
-    std::vector<std::array<Vec3, 3>> triangle;  ///< seen from outside in mathematical order
-    std::vector<Vec3> vertex, normal;           ///< its vertices, and the area vectors around them
-    double area = 0.0;
-};
-
-RegionSurface surface_of(const FoamMesh& mesh, RegionId region) {
-    RegionSurface surface;
-    IdVector<VertexId, Vec3> around(mesh.position.size());
-    for (const FaceId f : mesh.faces.ids()) {
-        const mesh::Face& face = mesh.faces[f];
-        if (face.back != region && face.front != region) continue;
-        std::array<Vec3, 3> corner{mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2)};
-        if (face.front == region) std::swap(corner[1], corner[2]);
-        const Vec3 area = 0.5 * cross(corner[1] - corner[0], corner[2] - corner[0]);
-        for (const VertexId v : face.vertices) around[v] += area;
-        surface.area += norm(area);
-        surface.triangle.push_back(corner);
-    }
-    for (const VertexId v : around.ids())
-        if (squared_norm(around[v]) > 0.0) {
-            surface.vertex.push_back(mesh.position[v]);
-            surface.normal.push_back(around[v] / norm(around[v]));
-        }
-    return surface;
-}
-
-struct Ball {
-    Vec3 center;
-    double radius = 0.0;
-};
-
-/// The ball whose surface this is, if all vertices are at one distance from their mean.
-std::optional<Ball> ball_of(const RegionSurface& surface) {
-    Ball ball;
-    for (const Vec3& x : surface.vertex) ball.center += x / static_cast<double>(surface.vertex.size());
-    for (const Vec3& x : surface.vertex)
-        ball.radius += norm(x - ball.center) / static_cast<double>(surface.vertex.size());
-    constexpr double kRound = 1e-6;
-    for (const Vec3& x : surface.vertex)
-        if (std::abs(norm(x - ball.center) - ball.radius) > kRound * ball.radius) return std::nullopt;
-    return ball;
-}
-
 Sample on_ball(const Ball& ball, std::size_t count) {
     Sample sample{{}, fibonacci_sphere(count)};
     for (const Vec3& n : sample.normal) sample.position.push_back(ball.center + ball.radius * n);
@@ -129,20 +69,6 @@ void deform(std::vector<Vec3>& position, const Vec3& center, const StartOptions&
         const Vec3 arm = x - center;
         x = center + (1.0 + options.mode_amplitude * legendre(options.mode, arm[0] / norm(arm))) * arm;
     }
-}
-
-/// What lies at particle i between its film and those of other bubbles that it has pushed through [m^3]: the gases
-/// press films of a partition a few tenths of a spacing into each other until cohesion holds them. Negative where they
-/// gape.
-double overlap_volume(const CoarseParticles& coarse, const Geometry& geometry, std::size_t i) {
-    const Neighbors& other = geometry.neighbors.other;
-    double depth = 0.0;
-    for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
-        const std::size_t j = other.index[k];
-        depth += 0.5 * geometry.area[j] * other.weight[k] *
-                 dot(coarse.position[i] - coarse.position[j], geometry.normal[i] - geometry.normal[j]);
-    }
-    return geometry.area[i] * depth;
 }
 
 }  // namespace
@@ -176,15 +102,16 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
     for (const film::Event& event : films.events) {
         if (event.kind == film::Event::Kind::kInflate)
             throw InputError("melp: [[event]] with kind = \"inflate\" is not built yet; use solver vortex_sheet");
-        if (event.region == film::kRandomBubble || event.into != film::kLargestNeighbor)
-            throw InputError("melp: [[event]] pop takes a region and no `into`: the bubble bursts into the air");
-        if (options.fine_ratio == 0)
+        const bool foam = bubble_count(films) > 1;
+        if (foam && event.kind == film::Event::Kind::kPuncture)
+            throw InputError("melp: [[event]] puncture in scenes of several bubbles is not built yet; use pop");
+        if (!foam && (event.region == film::kRandomBubble || event.into != film::kLargestNeighbor))
+            throw InputError("melp: [[event]] pop of a bubble on its own takes a region and no `into`");
+        if (!foam && options.fine_ratio == 0)
             throw InputError(
                 "melp.fine_ratio = 0: films burst only with fine particles, whose liquid the edge gathers");
-        if (bubble_count(films) > 1) throw InputError("melp: [[event]] in scenes of several bubbles is not built yet");
     }
     refuse_coarse_contacts(films);
-    refuse_wrong_volumes(films);
 }
 
 std::vector<Vec3> fibonacci_sphere(std::size_t count) {
@@ -293,6 +220,7 @@ void append(Start& start,
     if (gas.closed) {
         const double gauge = 2.0 / 3.0 * material.film_tension() * region.area / region.volume;
         gas.amount = (options.outside_pressure + gauge) * target_volume;
+        gas.balanced = gas.gauge_pressure(options.outside_pressure);
     }
     start.gas.push_back(gas);
     start.even.push_back(
@@ -306,12 +234,40 @@ std::size_t particles_on(double area, double spacing) {
     return static_cast<std::size_t>(std::max(std::round(area / (spacing * spacing)), kFewest));
 }
 
+/// Pairs of bubbles with a film between them that start from the mesh.
+std::vector<std::array<std::int32_t, 2>> joined_regions(const FoamMesh& mesh,
+                                                        const IdVector<RegionId, std::optional<Ball>>& loose,
+                                                        const std::vector<Gas>& gas) {
+    IdVector<RegionId, std::int32_t> here(mesh.regions.size());
+    for (std::size_t r = 0; r < gas.size(); ++r)
+        here[static_cast<RegionId>(gas[r].region)] = static_cast<std::int32_t>(r);
+    std::vector<std::array<std::int32_t, 2>> joined;
+    for (const mesh::Face& face : mesh.faces) {
+        const auto closed = [&](RegionId r) { return mesh.regions[r].kind == RegionKind::kClosed && !loose[r]; };
+        if (!closed(face.back) || !closed(face.front)) continue;
+        const std::int32_t a = here[face.back], b = here[face.front];
+        joined.push_back({std::min(a, b), std::max(a, b)});
+    }
+    std::sort(joined.begin(), joined.end());
+    joined.erase(std::unique(joined.begin(), joined.end()), joined.end());
+    return joined;
+}
+
+/// A round bubble with a spacing h between its coarse particles.
+RegionStart region_on(const Ball& ball, double h, int fine_ratio) {
+    RegionStart region{.area = 4.0 * std::numbers::pi * ball.radius * ball.radius};
+    region.volume = ball.radius * region.area / 3.0;
+    region.coarse = on_ball(ball, particles_on(region.area, h));
+    region.fine = on_ball(ball, static_cast<std::size_t>(fine_ratio) * region.coarse.position.size());
+    return region;
+}
+
 }  // namespace
 
 Rims start_rims(const film::Problem& films, const Options& options) {
     Rims rims;
     rims.set_wires(films.wires);
-    auto region = static_cast<std::int32_t>(bubble_count(films));
+    auto region = static_cast<std::int32_t>(bubble_count(films) - static_cast<std::int64_t>(films.releases.size()));
     std::int32_t before = 0;
     for (const OpenFilm& film : open_films(films)) {
         for (std::size_t k = 0; k < film.rims.size(); ++k) {
@@ -341,20 +297,27 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
     for (const OpenFilm& film : open)
         largest_radius = std::max(largest_radius, std::sqrt(film.area / std::numbers::pi));
     StartThickness thickness(films, options.start, seed, largest_radius);
+    const IdVector<RegionId, std::optional<Ball>> loose = loose_balls(films.mesh);
     for (const RegionId r : films.mesh.regions.ids()) {
-        if (films.mesh.regions[r].kind != RegionKind::kClosed) continue;
+        if (films.mesh.regions[r].kind != RegionKind::kClosed || volume[r] == 0.0) continue;
         const RegionSurface surface = surface_of(films.mesh, r);
-        const std::optional<Ball> ball = ball_of(surface);
-        RegionStart region{.area = ball ? 4.0 * std::numbers::pi * ball->radius * ball->radius : surface.area,
-                           .velocity = films.velocity[r]};
-        region.volume = ball ? ball->radius * region.area / 3.0 : volume[r];
-        region.coarse = ball ? on_ball(*ball, particles_on(region.area, h)) : Sample{surface.vertex, surface.normal};
-        const std::size_t fine = static_cast<std::size_t>(options.fine_ratio) * region.coarse.position.size();
-        region.fine = ball ? on_ball(*ball, fine) : on_triangles(surface.triangle, fine);
+        const std::optional<Ball> ball = loose[r] ? loose[r] : ball_of(surface);
+        RegionStart region;
+        if (ball) {
+            region = region_on(*ball, h, options.fine_ratio);
+        } else {
+            region.area = surface.area;
+            region.volume = volume[r];
+            region.coarse = {surface.vertex, surface.normal};
+            region.fine = on_triangles(surface.triangle,
+                                       static_cast<std::size_t>(options.fine_ratio) * region.coarse.position.size());
+        }
+        region.velocity = films.velocity[r];
         total_area += region.area;
         append(start, std::move(region), static_cast<std::int32_t>(index(r)), films.mesh.regions[r].target_volume,
                films.material, options, thickness);
     }
+    start.joined = joined_regions(films.mesh, loose, start.gas);
     for (const OpenFilm& film : open) {
         RegionStart region{
             .area = film.area, .volume = options.rim == RimHold::kWire ? 0.0 : film.volume, .held = true};
@@ -366,35 +329,22 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
         const double target = region.volume;
         append(start, std::move(region), film.back, target, films.material, options, thickness);
     }
-    if (start.gas.empty()) throw InputError("melp: the scene has no film; add a [[bubble]] or a [[film]]");
-    start.spacing = std::sqrt(total_area / static_cast<double>(start.coarse.size()));
+    if (start.gas.empty() && films.releases.empty())
+        throw InputError("melp: the scene has no film; add a [[bubble]] or a [[film]]");
+    start.spacing = start.gas.empty() ? h : std::sqrt(total_area / static_cast<double>(start.coarse.size()));
     return start;
 }
 
-std::vector<double> particle_volumes(const CoarseParticles& coarse,
-                                     const Geometry& geometry,
-                                     std::span<const RimPiece> rims,
-                                     const std::vector<Gas>& gas) {
-    std::vector<Vec3> center(gas.size());
-    std::vector<double> area(gas.size(), 0.0), volume(gas.size(), 0.0);
-    for (std::size_t i = 0; i < coarse.size(); ++i) {
-        const auto r = static_cast<std::size_t>(coarse.region[i]);
-        center[r] += geometry.area[i] * coarse.position[i];
-        area[r] += geometry.area[i];
-    }
-    for (std::size_t r = 0; r < gas.size(); ++r) center[r] = center[r] / area[r];
-    for (const RimPiece& piece : rims) center[static_cast<std::size_t>(piece.region)] = piece.a;  // in the plate
-    std::vector<double> share(coarse.size());
-    parallel_for(coarse.size(), [&](std::size_t i) {
-        const Vec3& o = center[static_cast<std::size_t>(coarse.region[i])];
-        const Neighbors& other = geometry.neighbors.other;
-        share[i] = other.begin(i) == other.end(i)
-                       ? geometry.area[i] * dot(coarse.position[i] - o, geometry.normal[i]) / 3.0
-                       : star_volume(coarse, geometry, i, o) - 0.5 * overlap_volume(coarse, geometry, i);
-    });
-    for (std::size_t i = 0; i < coarse.size(); ++i) volume[static_cast<std::size_t>(coarse.region[i])] += share[i];
-    for (std::size_t r = 0; r < gas.size(); ++r) volume[r] *= gas[r].calibration;
-    return volume;
+void append_release(Start& start,
+                    const film::Problem& films,
+                    const Options& options,
+                    const film::Release& release,
+                    std::uint64_t seed) {
+    RegionStart region = region_on({release.center, release.radius}, films.edge_length, options.fine_ratio);
+    region.velocity = release.velocity;
+    StartThickness thickness(films, options.start, seed + index(release.region), release.radius);
+    append(start, std::move(region), static_cast<std::int32_t>(index(release.region)),
+           films.mesh.regions[release.region].target_volume, films.material, options, thickness);
 }
 
 }  // namespace lamella::melp

@@ -4,7 +4,6 @@
 
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
-#include "lamella/film/bursting.h"
 #include "lamella/film/noise.h"
 #include "lamella/film/surfactant.h"
 #include "lamella/linalg/dense.h"
@@ -61,7 +60,6 @@ void VortexParticleSolver::check_moving() const {
     };
     refuse(options_.transfer == Reach::kKernel, "transfer = \"kernel\" on films that move is");
     refuse(!films.tensions.empty(), "[[tension]] factors are");
-    film::refuse_punctures(films, "vortex_particle");
     for (const film::Event& event : films.events)
         refuse(event.kind == film::Event::Kind::kInflate, "[[event]] of kind \"inflate\" is");
     refuse(norm(options_.stream.velocity) > 0.0, "stream.velocity of films that move is");

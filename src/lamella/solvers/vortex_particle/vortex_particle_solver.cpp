@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
+#include "lamella/film/bursting.h"
 #include "lamella/film/surfactant.h"
 #include "lamella/linalg/conjugate_gradient.h"
 #include "lamella/solvers/vortex_particle/exchange.h"
@@ -21,6 +22,7 @@ namespace {
 
 const film::Problem& films_of(const sim::SolverInput& input) {
     if (!input.films) throw InputError("the scene has no films; add a [[bubble]], [[film]] or [foam]");
+    film::refuse_what_melp_alone_knows(*input.films, "vortex_particle");
     return *input.films;
 }
 

@@ -37,7 +37,7 @@ using mesh::VertexId;
 VortexSheetSolver::VortexSheetSolver(const Options& options, const sim::SolverInput& input)
     : options_(options), input_(input) {
     if (!input_.films) throw InputError("the scene has no films; add a [[bubble]], [[film]] or [foam]");
-    film::refuse_punctures(*input_.films, "vortex_sheet");
+    film::refuse_what_melp_alone_knows(*input_.films, "vortex_sheet");
     const bool blows = std::any_of(input_.films->wires.begin(), input_.films->wires.end(),
                                    [](const film::Wire& wire) { return wire.ring && wire.ring->blow != 0.0; });
     if (blows && options_.compat.form == Form::kPoint)
