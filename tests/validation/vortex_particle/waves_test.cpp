@@ -260,5 +260,39 @@ edge_length = 0.125
     EXPECT_NEAR(thinning / (0.5 * std::exp(1.0) * kMach * kMach), 1.0, 0.05);
 }
 
+/// A Taylor vortex whose core is 2.5 and 5 edges in radius grows as a^2 + 2 nu t; of its energy is left the square of
+/// the ratio of the two areas.
+TEST(ViscousFilm, FadesNarrowSwirlsAsItsViscositySays) {
+    std::vector<double> error;
+    for (const double edge : {0.08, 0.04}) {
+        auto solver = solver_of(fmt::format(R"(
+[material]
+kinematic_viscosity = 0.01
+[[film]]
+shape = "rectangle"
+center = [-1, -1, 0]
+u = [2, 0, 0]
+v = [0, 2, 0]
+[[vortex]]
+profile = "taylor"
+radius = 0.2
+speed = 1
+[resolution]
+edge_length = {}
+[vortex_particle]
+incompressible = true
+particles_per_triangle = 4
+largest_step = 0.02
+)",
+                                            edge));
+        solver->start({});
+        const double energy = solver->kinetic_energy();
+        run_until(*solver, 1.0);
+        error.push_back(solver->kinetic_energy() / energy / std::pow(0.04 / 0.06, 2) - 1.0);
+    }
+    EXPECT_LT(std::abs(error[0]), 0.025) << error[0];
+    EXPECT_LT(std::abs(error[1]), 0.01) << error[1];
+}
+
 }  // namespace
 }  // namespace lamella::vortex_particle
