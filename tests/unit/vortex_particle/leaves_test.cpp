@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "surfaces.h"
+#include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace lamella::vortex_particle {
@@ -80,6 +82,30 @@ TEST(MergeCrowds, KeepsAllThatParticlesHave) {
     EXPECT_NEAR(std::accumulate(particles.circulation.begin(), particles.circulation.end(), 0.0), circulation,
                 1e-12 * volume);
     for (const auto& place : particles.place) EXPECT_NEAR(place[0] + place[1] + place[2], 1.0, 1e-12);
+}
+
+/// Work that grew with the cube of the crowd would take hours here.
+TEST(MergeCrowds, TakesCrowdsOfManyThousands) {
+    const Surface s = surface_of(mesh::spheres({{Vec3{}, 1.0}}, 0.1));
+    Particles particles = spread_particles(s, 12, 1);
+    for (double& volume : particles.volume) volume = 1.0;
+    std::fill(particles.triangle.begin(), particles.triangle.end(), 7U);
+    const auto count = static_cast<double>(particles.size());
+    const auto center = [&] {
+        std::array<double, 3> sum{};
+        for (std::size_t p = 0; p < particles.size(); ++p)
+            for (std::size_t k = 0; k < 3; ++k) sum[k] += particles.volume[p] * particles.place[p][k] / count;
+        return sum;
+    };
+    const std::array<double, 3> before = center();
+    Bins bins = sort_by_triangle(particles, s.triangles());
+    ASSERT_GT(particles.size(), 20000U);
+    merge_crowds(s, 40, particles, bins);
+    EXPECT_EQ(particles.size(), 40U);
+    EXPECT_NEAR(std::accumulate(particles.volume.begin(), particles.volume.end(), 0.0), count, 1e-9 * count);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(center()[k], before[k], 1e-12);
+    // Neighbors have merged: none has become a large share of all.
+    EXPECT_LT(*std::max_element(particles.volume.begin(), particles.volume.end()), 0.1 * count);
 }
 
 }  // namespace

@@ -178,7 +178,7 @@ TEST(MovingFilms, GoAlongWithSolids) {
     solver->start({});
     advance(*solver, 0.01);
     const Surface& s = solver->surface();
-    const Cover cover = cover_of(s, solver->bodies());
+    const Cover cover = cover_of(s, solver->bodies(), 0.0);
     double lack = 0.0, speed = 0.0;
     for (std::size_t t = 0; t < s.triangles(); ++t) {
         if (cover.share[t] < 1.0) continue;

@@ -1,12 +1,11 @@
 // Waves: of thickness in a flat film, of vorticity on a sphere; rotations; the core of a vortex.
 
-#include "films.h"
-
 #include "lamella/mesh/shapes/sphere.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "films.h"
 #include <cmath>
 #include <complex>
 
@@ -75,7 +74,8 @@ edge_length = {}
 [vortex_particle]
 incompressible = true
 largest_step = {}
-)", edge, step);
+)",
+                       edge, step);
 }
 
 /// Size and phase of the wave that turns about z with three crests.
@@ -127,7 +127,8 @@ axis = [1, 2, 3]
 edge_length = 0.15
 [vortex_particle]
 incompressible = true
-)", {std::string("vortex_particle.viscosity=") + form});
+)",
+                                {std::string("vortex_particle.viscosity=") + form});
         solver->start({});
         const double energy = solver->kinetic_energy();
         run_until(*solver, 5.0);
@@ -141,7 +142,8 @@ incompressible = true
 ///
 ///     E / E_0 = 8 sum exp(-2 nu l_n^2 t / R^2) / l_n^2,   l_n the zeros of the Bessel function J_1
 TEST(WallsWithoutSlip, StopARotationAsViscosityAsks) {
-    constexpr double kZeros[] = {3.8317059702, 7.0155866698, 10.1734681351, 13.3236919363, 16.4706300509, 19.6158585105};
+    constexpr double kZeros[] = {3.8317059702,  7.0155866698,  10.1734681351,
+                                 13.3236919363, 16.4706300509, 19.6158585105};
     std::vector<double> error;
     for (const double edge : {0.1, 0.05}) {
         auto solver = solver_of(fmt::format(R"(
@@ -159,7 +161,8 @@ edge_length = {0}
 incompressible = true
 walls = "no_slip"
 largest_step = {1}
-)", edge, 0.1 * edge));
+)",
+                                            edge, 0.1 * edge));
         solver->start({});
         const double start = solver->kinetic_energy();
         double worst = 0.0;
@@ -198,13 +201,15 @@ thickness_top = 4.04e-7
 thickness_bottom = 3.96e-7
 surfactant = "proportional"
 up = [1, 0, 0]
-)", edge, kStep));
+)",
+                                            edge, kStep));
         solver->start({});
         const Surface& s = solver->surface();
         const auto amplitude = [&] {
             double sum = 0.0;
             for (std::size_t v = 0; v < s.vertices(); ++v)
-                sum += s.vertex_area[v] * (solver->observed().thickness[v] / 4e-7 - 1.0) * std::cos(kPi * s.position[v][0]);
+                sum += s.vertex_area[v] * (solver->observed().thickness[v] / 4e-7 - 1.0) *
+                       std::cos(kPi * s.position[v][0]);
             return sum;
         };
         std::vector<double> zeros;
@@ -246,7 +251,8 @@ radius = 0.5
 speed = 1.0
 [resolution]
 edge_length = 0.125
-)", 1.0 / kMach));
+)",
+                                        1.0 / kMach));
     solver->start({});
     run_until(*solver, 1.0);  // the waves of the sudden start run out in a box of 4 m: the mean over the next second
     double thinning = 0.0;
@@ -255,9 +261,44 @@ edge_length = 0.125
         run_until(*solver, 1.0 + static_cast<double>(k) / kLooks);
         const MeshFlow& flow = solver->observed();
         thinning += std::log(value_at(solver->surface(), flow.thickness, {{1.9, 0.1, 0.0}}) /
-                             value_at(solver->surface(), flow.thickness, {})) / kLooks;
+                             value_at(solver->surface(), flow.thickness, {})) /
+                    kLooks;
     }
     EXPECT_NEAR(thinning / (0.5 * std::exp(1.0) * kMach * kMach), 1.0, 0.05);
+}
+
+/// A Taylor vortex whose core is 2.5 and 5 edges in radius grows as a^2 + 2 nu t; of its energy is left the square of
+/// the ratio of the two areas.
+TEST(ViscousFilm, FadesNarrowSwirlsAsItsViscositySays) {
+    std::vector<double> error;
+    for (const double edge : {0.08, 0.04}) {
+        auto solver = solver_of(fmt::format(R"(
+[material]
+kinematic_viscosity = 0.01
+[[film]]
+shape = "rectangle"
+center = [-1, -1, 0]
+u = [2, 0, 0]
+v = [0, 2, 0]
+[[vortex]]
+profile = "taylor"
+radius = 0.2
+speed = 1
+[resolution]
+edge_length = {}
+[vortex_particle]
+incompressible = true
+particles_per_triangle = 4
+largest_step = 0.02
+)",
+                                            edge));
+        solver->start({});
+        const double energy = solver->kinetic_energy();
+        run_until(*solver, 1.0);
+        error.push_back(solver->kinetic_energy() / energy / std::pow(0.04 / 0.06, 2) - 1.0);
+    }
+    EXPECT_LT(std::abs(error[0]), 0.025) << error[0];
+    EXPECT_LT(std::abs(error[1]), 0.01) << error[1];
 }
 
 }  // namespace

@@ -176,24 +176,44 @@ void ShiftedStiffness::factorize(const Surface& s,
         throw NumericalError("vortex_particle: a diffusion matrix of the film is singular");
 }
 
-int ShiftedStiffness::solve_lagging(const Surface& s,
-                                    double scale,
-                                    std::span<const double> weight,
-                                    std::span<const double> mass,
-                                    std::vector<double>& x) const {
-    const std::vector<double> b = x;
-    factors_.precondition(x);
+namespace {
+
+constexpr double kTie = 1.0 / 24.0;  // half of what the integrals of phi_i phi_j have
+
+}  // namespace
+
+Diffusion::Diffusion(const Surface& s, Films films) : matrix_(s, all_vertices(s)), factors_(refactored(films)) {
+    factors_.analyze(matrix_.matrix());
+}
+
+void Diffusion::factorize(const Surface& s, double scale) {
+    scale_ = scale;
+    matrix_.assemble(s, scale, {}, s.vertex_area, kTie);
+    if (!factors_.factorize(matrix_.matrix()))
+        throw NumericalError("vortex_particle: the matrix of the film's viscosity is singular");
+}
+
+void Diffusion::spread(const Surface& s, std::vector<double>& cells) const {
+    std::vector<double> density = cells;
+    factors_.solve(density);
+    add_stiffness(s, -scale_, {}, density, cells);
+}
+
+void Diffusion::spread_lagging(const Surface& s, double scale, std::vector<double>& cells) const {
+    std::vector<double> density = cells;
+    factors_.precondition(density);
     const auto apply = [&](const std::vector<double>& p, std::vector<double>& y) {
         y.resize(p.size());
-        for (std::size_t v = 0; v < p.size(); ++v) y[v] = mass[v] * p[v];
-        add_stiffness(s, scale, weight, p, y);
+        for (std::size_t v = 0; v < p.size(); ++v) y[v] = s.vertex_area[v] * p[v];
+        add_ties(s, kTie, p, y);
+        add_stiffness(s, scale, {}, p, y);
     };
     const auto precondition = [&](const std::vector<double>& p, std::vector<double>& y) {
         y = p;
         factors_.precondition(y);
     };
-    return linalg::preconditioned_conjugate_gradient(apply, precondition, b, x, kLaggingTolerance, kMostIterations)
-        .iterations;
+    linalg::preconditioned_conjugate_gradient(apply, precondition, cells, density, kLaggingTolerance, kMostIterations);
+    add_stiffness(s, -scale, {}, density, cells);
 }
 
 }  // namespace lamella::vortex_particle

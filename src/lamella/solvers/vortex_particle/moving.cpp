@@ -103,7 +103,7 @@ void VortexParticleSolver::take_films(FoamMesh mesh) {
     surface_ = surface_of(mesh, options_.walls);
     transfer_ = Transfer(surface_, options_.transfer, options_.kernel_radius * surface_.longest_edge);
     flow_solver_ = FlowSolver(surface_, Films::kMoving);
-    diffusion_ = ShiftedStiffness(surface_, Films::kMoving);
+    diffusion_ = Diffusion(surface_, Films::kMoving);
     compression_ = ShiftedStiffness(surface_, Films::kMoving);
     auto moving = std::make_unique<Moving>(mesh, surface_);
     if (moving_) {
@@ -340,7 +340,7 @@ void VortexParticleSolver::factor_moving() {
         for (std::size_t v = 0; v < mass.size(); ++v) mass[v] = surface_.vertex_area[v] / (r.step * r.surfactant[v]);
         compression_.factorize(surface_, r.step * surfactant_strength_, weight, mass);
     }
-    if (viscosity_ > 0.0) diffusion_.factorize(surface_, viscosity_ * r.step, {}, surface_.vertex_area);
+    if (viscosity_ > 0.0) diffusion_.factorize(surface_, viscosity_ * r.step);
     mass = r.mass;
     if (m.air) {
         m.air->factorize(surface_);
@@ -358,10 +358,8 @@ void VortexParticleSolver::diffuse_moving(double dt, MeshFlow& flow) const {
         const std::vector<double> stream = flow_solver_.stream_function(surface_, flow.circulation, hole_circulation_);
         add_stiffness(surface_, -2.0 * viscosity_ * dt, curvature_, stream, flow.circulation);
     }
-    for (std::vector<double>* cell : {&flow.circulation, &flow.outflow}) {
-        diffusion_.solve_lagging(surface_, viscosity_ * dt, {}, surface_.vertex_area, *cell);
-        for (std::size_t v = 0; v < cell->size(); ++v) (*cell)[v] *= surface_.vertex_area[v];
-    }
+    for (std::vector<double>* cells : {&flow.circulation, &flow.outflow})
+        diffusion_.spread_lagging(surface_, viscosity_ * dt, *cells);
 }
 
 double VortexParticleSolver::film_energy() const {

@@ -91,9 +91,9 @@ sim::Frame VortexParticleSolver::frame() const {
     fields.push_back({"surfactant_concentration", "mol/m^2", 1, false, of_films(surface_, vertices, flow.surfactant)});
     fields.push_back({"dilatation", "1/s", 1, false, of_films(surface_, vertices, dilatation)});
     if (!input_.films->solids.empty()) {
-        const Cover cover = cover_of(surface_, bodies_);
+        const Cover held = cover(step_);
         std::vector<double> solid(films().faces.size(), 0.0);
-        for (std::size_t t = 0; t < surface_.triangles(); ++t) solid[surface_.film[t]] = cover.share[t];
+        for (std::size_t t = 0; t < surface_.triangles(); ++t) solid[surface_.film[t]] = held.share[t];
         frame.surface.face_fields.push_back({"solid", "-", 1, false, std::move(solid)});
     }
     std::vector<Vec3> velocity = of_films(surface_, vertices, vertex_velocity(surface_, flow.velocity));

@@ -153,33 +153,41 @@ VertexMatrix::VertexMatrix(const Surface& s, std::vector<int> unknown) : unknown
     }
 }
 
-void VertexMatrix::assemble(const Surface& s,
-                            double scale,
-                            std::span<const double> weight,
-                            std::span<const double> mass) {
+void VertexMatrix::assemble(
+    const Surface& s, double scale, std::span<const double> weight, std::span<const double> mass, double tie) {
     std::fill(matrix_.value.begin(), matrix_.value.end(), 0.0);
     for (std::size_t t = 0; t < s.triangles(); ++t) {
-        const double w = scale * s.area[t] * (weight.empty() ? 1.0 : weight[t]);
+        const double w = scale * s.area[t] * (weight.empty() ? 1.0 : weight[t]), bond = tie * s.area[t];
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
             if (slot_[t][k] >= 0)
-                matrix_.value[static_cast<std::size_t>(slot_[t][k])] += w * squared_norm(s.hat_slope[t][k]);
+                matrix_.value[static_cast<std::size_t>(slot_[t][k])] +=
+                    w * squared_norm(s.hat_slope[t][k]) - 2.0 * bond;
             if (slot_[t][3 + k] < 0) continue;
             // Two corners with one unknown: both halves of the pair fall on its diagonal.
             const double twice = unknown_[s.corner[t][a]] == unknown_[s.corner[t][b]] ? 2.0 : 1.0;
             matrix_.value[static_cast<std::size_t>(slot_[t][3 + k])] +=
-                twice * w * dot(s.hat_slope[t][a], s.hat_slope[t][b]);
+                twice * (w * dot(s.hat_slope[t][a], s.hat_slope[t][b]) + bond);
         }
     }
     for (std::size_t v = 0; v < mass.size(); ++v)
         if (unknown_[v] >= 0) matrix_.diagonal(static_cast<std::size_t>(unknown_[v])) += mass[v];
 }
 
-void add_stiffness(const Surface& s, double scale, std::span<const double> weight, std::span<const double> x, std::span<double> y) {
-    std::vector<Vec3> flux = gradient(s, x);
-    parallel_for(s.triangles(), [&](std::size_t t) {
-        flux[t] *= scale * s.area[t] * (weight.empty() ? 1.0 : weight[t]);
+void add_ties(const Surface& s, double tie, std::span<const double> x, std::span<double> y) {
+    parallel_for(s.vertices(), [&](std::size_t v) {
+        double sum = 0.0;
+        for (const auto& [t, k] : s.around(v))
+            sum += s.area[t] * (x[s.corner[t][(k + 1) % 3]] + x[s.corner[t][(k + 2) % 3]] - 2.0 * x[v]);
+        y[v] += tie * sum;
     });
+}
+
+void add_stiffness(
+    const Surface& s, double scale, std::span<const double> weight, std::span<const double> x, std::span<double> y) {
+    std::vector<Vec3> flux = gradient(s, x);
+    parallel_for(s.triangles(),
+                 [&](std::size_t t) { flux[t] *= scale * s.area[t] * (weight.empty() ? 1.0 : weight[t]); });
     parallel_for(s.vertices(), [&](std::size_t v) {
         for (const auto& [t, k] : s.around(v)) y[v] += dot(s.hat_slope[t][k], flux[t]);
     });

@@ -70,8 +70,9 @@ public:
     /// @param unknown  of each vertex; -1: none, its value is given elsewhere
     VertexMatrix(const Surface& s, std::vector<int> unknown);
 
-    /// matrix = sum of `scale` w_t K_t + diag(mass). @param weight  one per triangle, or empty for 1
-    void assemble(const Surface& s, double scale, std::span<const double> weight, std::span<const double> mass);
+    /// matrix = sum of `scale` w_t K_t + diag(mass) + `tie` T. @param weight  one per triangle, or empty for 1
+    void assemble(
+        const Surface& s, double scale, std::span<const double> weight, std::span<const double> mass, double tie = 0.0);
 
     const linalg::SymmetricMatrix& matrix() const { return matrix_; }
     std::size_t size() const { return matrix_.size(); }
@@ -83,6 +84,10 @@ private:
     linalg::SymmetricMatrix matrix_;
     std::vector<std::array<std::int64_t, 6>> slot_;  ///< per triangle: 00, 11, 22, 12, 20, 01; -1: not there
 };
+
+/// y += tie T x, (T x)_i the sum over triangles A_t (x_j + x_k - 2 x_i): by 1/12 of it the integrals of phi_i phi_j
+/// differ from the vertices' areas.
+void add_ties(const Surface& s, double tie, std::span<const double> x, std::span<double> y);
 
 /// y += scale K_w x.
 void add_stiffness(

@@ -3,8 +3,11 @@
 #include "lamella/core/parallel.h"
 #include "lamella/core/random.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 namespace lamella::vortex_particle {
 
@@ -87,22 +90,86 @@ void join(std::size_t p, std::size_t q, Particles& particles) {
     particles.triangle[q] = kGone;
 }
 
-void thin_out(const Surface& s, std::size_t begin, std::size_t end, std::size_t most, Particles& particles) {
-    std::vector<std::size_t> here(end - begin);
-    std::iota(here.begin(), here.end(), begin);
+/// Closest first, `here` become `most`. Whom each is nearest to is kept, so that a pair costs one look at each.
+void join_closest(const Surface& s, std::size_t most, std::vector<std::size_t>& here, Particles& particles) {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    const auto distance = [&](std::size_t i, std::size_t j) {
+        const std::uint32_t t = particles.triangle[here[i]];
+        return squared_norm(s.point(t, particles.place[here[i]]) - s.point(t, particles.place[here[j]]));
+    };
+    struct Nearest {
+        std::size_t other;  // behind it in `here`
+        double distance;
+    };
+    std::vector<Nearest> nearest(here.size());
+    const auto look = [&](std::size_t i) {
+        nearest[i] = {i, kFar};
+        for (std::size_t j = i + 1; j < here.size(); ++j)
+            if (const double d = distance(i, j); d < nearest[i].distance) nearest[i] = {j, d};
+    };
+    for (std::size_t i = 0; i < here.size(); ++i) look(i);
     while (here.size() > most) {
-        std::size_t first = 0, second = 1;
-        double nearest = -1.0;
-        for (std::size_t i = 0; i < here.size(); ++i)
-            for (std::size_t j = i + 1; j < here.size(); ++j) {
-                const std::uint32_t t = particles.triangle[here[i]];
-                const double d =
-                    squared_norm(s.point(t, particles.place[here[i]]) - s.point(t, particles.place[here[j]]));
-                if (nearest < 0.0 || d < nearest) nearest = d, first = i, second = j;
-            }
+        const auto closest = std::min_element(
+            nearest.begin(), nearest.end(), [](const Nearest& x, const Nearest& y) { return x.distance < y.distance; });
+        const auto first = static_cast<std::size_t>(closest - nearest.begin());
+        const std::size_t second = closest->other;
         join(here[first], here[second], particles);
         here.erase(here.begin() + static_cast<std::ptrdiff_t>(second));
+        nearest.erase(nearest.begin() + static_cast<std::ptrdiff_t>(second));
+        look(first);
+        for (std::size_t i = 0; i < second; ++i) {
+            if (i == first) continue;
+            Nearest& n = nearest[i];
+            if (n.other == first || n.other == second) {
+                look(i);
+                continue;
+            }
+            if (n.other > second) --n.other;
+            if (i > first) continue;
+            if (const double d = distance(i, first); d < n.distance || (d == n.distance && first < n.other))
+                n = {first, d};
+        }
+        for (std::size_t i = second; i < nearest.size(); ++i) --nearest[i].other;
     }
+}
+
+/// Those that are near each other in the triangle come near each other in the list: along Morton's curve.
+void sort_along_curve(std::vector<std::size_t>& here, const Particles& particles) {
+    const auto code = [&](std::size_t p) {
+        const auto cell = [&](std::size_t k) {
+            return static_cast<std::uint32_t>(65535.0 * std::clamp(particles.place[p][k], 0.0, 1.0));
+        };
+        const std::uint32_t x = cell(1), y = cell(2);
+        std::uint64_t mixed = 0;
+        for (unsigned bit = 0; bit < 16; ++bit)
+            mixed |= static_cast<std::uint64_t>((x >> bit & 1U) | (y >> bit & 1U) << 1U) << (2 * bit);
+        return mixed;
+    };
+    std::vector<std::pair<std::uint64_t, std::size_t>> key;
+    for (const std::size_t p : here) key.emplace_back(code(p), p);
+    std::sort(key.begin(), key.end());
+    for (std::size_t i = 0; i < here.size(); ++i) here[i] = key[i].second;
+}
+
+/// Large crowds are halved in groups of neighbors until few are left, so that the work grows with their number.
+void thin_out(const Surface& s, std::size_t begin, std::size_t end, std::size_t most, Particles& particles) {
+    constexpr std::size_t kGroup = 64;
+    std::vector<std::size_t> here(end - begin), left, group;
+    std::iota(here.begin(), here.end(), begin);
+    if (here.size() > kGroup) sort_along_curve(here, particles);
+    while (here.size() > std::max(most, kGroup)) {
+        const std::size_t count = here.size(), wanted = std::max(most, (count + 1) / 2);
+        left.clear();
+        for (std::size_t from = 0; from < count; from += kGroup) {
+            const std::size_t to = std::min(count, from + kGroup);
+            group.assign(here.begin() + static_cast<std::ptrdiff_t>(from),
+                         here.begin() + static_cast<std::ptrdiff_t>(to));
+            join_closest(s, to * wanted / count - from * wanted / count, group, particles);
+            left.insert(left.end(), group.begin(), group.end());
+        }
+        here.swap(left);
+    }
+    if (here.size() > most) join_closest(s, most, here, particles);
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ double remove_gone(Particles& particles);
 
 /// Where a triangle has more than `most` particles, those closest to each other become one until it has no more: with
 /// the sum of what they have, at their center of mass, which hat functions cannot tell from both, and with their
-/// momentum.
+/// momentum. Of more than 64 the closest of each group of neighbors do.
 void merge_crowds(const Surface& s, std::size_t most, Particles& particles, Bins& bins);
 
 /// Each triangle without particles gets one in its middle, half of the largest one of its neighbors: nothing is made

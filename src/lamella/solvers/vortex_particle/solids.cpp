@@ -1,6 +1,7 @@
 #include "lamella/solvers/vortex_particle/solids.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace lamella::vortex_particle {
@@ -47,17 +48,18 @@ void move_bodies(std::span<const film::Solid> solids, double time, double ahead,
     }
 }
 
-Cover cover_of(const Surface& s, std::span<const Body> bodies) {
+Cover cover_of(const Surface& s, std::span<const Body> bodies, double spread) {
     // Of an edge: how far inside its surface a solid's hold begins, so that it acts as large as it is, by the added
-    // mass of a disk four edges in radius (0.82 of it with 0.35, 1.08 with 0).
-    constexpr double kInward = 0.11;
+    // mass of disks four and eight edges in radius.
+    constexpr double kInward = 0.22;
     Cover cover{std::vector<double>(s.triangles(), 0.0), std::vector<std::int32_t>(s.triangles(), -1)};
     for (std::size_t t = 0; t < s.triangles(); ++t) {
         const Vec3 x = s.point(t, kMiddle);
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             if (!bodies[b].in_film) continue;
-            const double depth = (bodies[b].radius - norm(x - bodies[b].center)) / s.edge_length(t);
-            const double share = std::clamp(depth - kInward, 0.0, 1.0);
+            const double depth = (bodies[b].radius + spread - norm(x - bodies[b].center)) / s.edge_length(t);
+            const double free = 1.0 - std::clamp(depth - kInward, 0.0, 1.0);
+            const double share = 1.0 - free * free * free * free;
             if (share <= cover.share[t]) continue;
             cover.share[t] = share;
             cover.body[t] = static_cast<std::int32_t>(b);

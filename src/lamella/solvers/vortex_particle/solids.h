@@ -30,13 +30,16 @@ std::vector<Body> bodies_at_start(std::span<const film::Solid> solids);
 /// Puts those that move as they are told where they are at `time`; the others `ahead` in time by their velocity [s].
 void move_bodies(std::span<const film::Solid> solids, double time, double ahead, std::span<Body> bodies);
 
-/// The share of each triangle that a solid covers, 0 to 1 over a layer of one edge inside its surface, and which solid:
-/// where several overlap the one that covers more.
+/// How firmly a solid holds each triangle, 0 to 1 over a layer of one edge inside its surface, and which solid: where
+/// several overlap the one that holds it more. The layer is steep outside, so that it matters little how many sweeps a
+/// step has.
 struct Cover {
     std::vector<double> share;
     std::vector<std::int32_t> body;  ///< -1: none
 };
-Cover cover_of(const Surface& s, std::span<const Body> bodies);
+/// @param spread  how far viscosity carries vorticity in a step, sqrt(nu dt) [m]: between two holds the film inside the
+///                solid starts to move, as if the solid were smaller by that much
+Cover cover_of(const Surface& s, std::span<const Body> bodies, double spread);
 
 /// The largest speed of any solid's surface that is told [m/s].
 double fastest(std::span<const film::Solid> solids);

@@ -74,7 +74,9 @@ private:
     void hold_walls(MeshFlow& flow);
     void diffuse(double dt, MeshFlow& flow);
     void obey_solids(double dt, MeshFlow& flow);
+    Cover cover(double dt) const;
     void recover_velocity(MeshFlow& flow) const;
+    std::vector<double> particle_circulation(const MeshFlow& flow, std::vector<double> spin) const;
     void mesh_to_particles(double dt,
                            const MeshFlow& before,
                            const MeshFlow& after,
@@ -136,7 +138,8 @@ private:
     Stream stream_;
     Transfer transfer_;
     FlowSolver flow_solver_;
-    ShiftedStiffness diffusion_, compression_;
+    Diffusion diffusion_;
+    ShiftedStiffness compression_;
     std::vector<double> curvature_;  ///< Gaussian, of triangles; empty where the film is flat [1/m^2]
     std::vector<double> gravity_;    ///< weak divergence of gravity along the film [m^2/s^2]
 
