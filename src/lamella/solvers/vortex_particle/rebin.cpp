@@ -140,10 +140,15 @@ void fit_areas(const Surface& s,
                const std::vector<std::uint8_t>& touched,
                Particles& particles) {
     constexpr int kSweeps = 5;
+    // What came to changed triangles has a share in their other corners too, which have to be right again.
+    std::vector<std::uint8_t> near = touched;
+    for (const auto& corners : s.corner)
+        if (std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return touched[v] != 0; }))
+            for (const std::uint32_t v : corners) near[v] = 1;
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
         std::vector<double> factor = transfer.deposit(s, particles, bins, particles.area);
         for (std::size_t v = 0; v < factor.size(); ++v)
-            factor[v] = touched[v] != 0 && factor[v] > 0.0 ? s.vertex_area[v] / factor[v] : 1.0;
+            factor[v] = near[v] != 0 && factor[v] > 0.0 ? s.vertex_area[v] / factor[v] : 1.0;
         const std::vector<double> change = transfer.gather(s, particles, factor);
         for (std::size_t p = 0; p < particles.size(); ++p) particles.area[p] *= change[p];
     }
