@@ -81,7 +81,7 @@ half-bubble|melp/half-bubble-small|10||Half a bubble on a plate, in the wind
 bursting-disk|melp/burst-disk-small|7||A film in a ring was pricked: the hole's edge gathers the liquid
 bursting-giant|melp/giant-bubble-small|4||A giant bubble, pricked from the right, a few milliseconds later
 four-bubbles|melp/four-bubbles-small|10|--exposure 0.8|Four bubbles have flown together
-thirteen-bubbles|melp/thirteen-bubbles-small|6|--camera 118,16 --exposure 0.6|Twelve bubbles have flown at one in their middle
+thirteen-bubbles|melp/thirteen-bubbles-small|6|--exposure 0.6|Twelve bubbles have flown at one in their middle
 catenoid|equilibrium/catenoid-0.8-small|last||The catenoid between two rings
 catenoid-0.4|equilibrium/catenoid-0.4-small|last||The same between rings that are near
 catenoid-1.3|equilibrium/catenoid-1.3-small|last||The same, nearly as far apart as rings can be
@@ -105,7 +105,7 @@ cluster-6|equilibrium/cluster-6-small|last|--environment window --exposure 0.8|S
 cluster-13|equilibrium/cluster-13-small|last|--exposure 0.7|Thirteen bubbles: one inside, twelve around it
 inflate-and-pop|equilibrium/inflate-and-pop-small|last|--ground|Bubbles inflated, others popped
 kelvin|equilibrium/kelvin-small|last|--exposure 0.8|Kelvin's foam, sixteen bubbles
-weaire-phelan|equilibrium/weaire-phelan-small|last|--exposure 0.6 --samples 32|The foam of Weaire and Phelan, 64 bubbles
+weaire-phelan|equilibrium/weaire-phelan-small|last|--images 1 --exposure 0.7|The foam of Weaire and Phelan: the eight bubbles that repeat
 coarsening-2d|bubble/coarsening-2d-small|last|--field radius|A flat foam coarsens: the large grow, the small vanish
 coarsening-3d|bubble/coarsening-3d-small|last|--ground|A foam coarsens
 flow-2d|bubble/flow-2d-small|last|--field velocity|A flat foam flows
