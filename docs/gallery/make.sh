@@ -105,7 +105,7 @@ cluster-6|equilibrium/cluster-6-small|last|--environment window --exposure 0.8|S
 cluster-13|equilibrium/cluster-13-small|last|--exposure 0.7|Thirteen bubbles: one inside, twelve around it
 inflate-and-pop|equilibrium/inflate-and-pop-small|last|--ground|Bubbles inflated, others popped
 kelvin|equilibrium/kelvin-small|last|--exposure 0.8|Kelvin's foam, sixteen bubbles
-weaire-phelan|equilibrium/weaire-phelan-small|last|--exposure 0.6 --samples 32|The foam of Weaire and Phelan, 64 bubbles
+weaire-phelan|equilibrium/weaire-phelan-small|last|--images 1 --exposure 0.7|The foam of Weaire and Phelan: the eight bubbles that repeat
 coarsening-2d|bubble/coarsening-2d-small|last|--field radius|A flat foam coarsens: the large grow, the small vanish
 coarsening-3d|bubble/coarsening-3d-small|last|--ground|A foam coarsens
 flow-2d|bubble/flow-2d-small|last|--field velocity|A flat foam flows

@@ -44,8 +44,8 @@ class Parser:
 
     def __init__(self, text):
         require(text.startswith("#usda 1.0\n"), "does not begin with #usda 1.0")
-        self.tokens, at = [], len("#usda 1.0\n")
-        while text[at:].strip():
+        self.tokens, at, end = [], len("#usda 1.0\n"), len(text.rstrip())
+        while at < end:
             match = TOKEN.match(text, at)
             require(match, f"not USD: {text[at:at + 40]!r}")
             self.tokens.append((match.lastgroup, match.group(match.lastgroup)))
