@@ -31,7 +31,6 @@ std::size_t region_of(const CoarseParticles& coarse, std::size_t i) {
 
 /// Strengths of the pairs: c_ij, of one region and of two. [N/m]
 struct Pairs {
-    std::vector<double> gamma;  ///< of films of other regions at each particle [-]
     std::vector<double> own;    ///< tau_i per particle
     std::vector<double> same;   ///< per entry of neighbors.same
     std::vector<double> other;  ///< per entry of neighbors.other
@@ -88,7 +87,6 @@ Pairs pair_strengths(const NormalProblem& p) {
     const Images& images = p.geometry.images;
     const std::vector<double>& a = p.geometry.area;
     Pairs pairs;
-    pairs.gamma.resize(a.size());
     pairs.own.resize(a.size());
     pairs.same.resize(same.index.size());
     pairs.other.resize(other.index.size());
@@ -99,7 +97,6 @@ Pairs pair_strengths(const NormalProblem& p) {
         double gamma = 0.0;
         for (std::size_t k = other.begin(i); k < other.end(i); ++k)
             gamma += (p.joined.empty() ? 1.0 : p.joined[k]) * a[other.index[k]] * other.weight[k];
-        pairs.gamma[i] = gamma;
         const Cohesion c = cohesion(gamma, p.junction_correction);
         pairs.own[i] = p.interface_tension[i] * c.own;
         toward[i] = p.interface_tension[i] * c.other;
@@ -274,29 +271,11 @@ std::vector<FreeCluster> free_clusters(const NormalProblem& p) {
     return free;
 }
 
-/// Where what discretization leaves of forces and areas is taken off: where it comes from. Folds at a junction are not
-/// what areas and normals from neighbors say; on other films the same was up to 3 % of the pressure of gas, and curved
-/// partitions too little by as much. Bubbles on their own: everywhere.
-std::vector<double> shares_of_error(const NormalProblem& p, const Pairs& pairs) {
-    constexpr double kElsewhere = 0.003, kPartition = 0.95;  // least gamma there
-    std::vector<std::uint8_t> touches(p.gas.size(), 0);
-    const Neighbors& other = p.geometry.neighbors.other;
-    for (std::size_t i = 0; i < p.coarse.size(); ++i)
-        if (other.begin(i) != other.end(i)) touches[region_of(p.coarse, i)] = 1;
-    std::vector<double> share = p.geometry.area;
-    for (std::size_t i = 0; i < share.size(); ++i) {
-        if (touches[region_of(p.coarse, i)] == 0) continue;
-        const double gamma = std::min(pairs.gamma[i] / kPartition, 1.0);
-        const double fold = 4.0 * gamma * (1.0 - gamma);
-        share[i] *= kElsewhere + fold * fold;
-    }
-    return share;
-}
-
 /// The areas that gas pushes on [m^2]. Those of a closed bubble push it nowhere and do not turn it, so that it flies
 /// and turns without a change of volume. Sums over particles know that to a thousandth, but gas at one atmosphere moves
-/// a bubble by what is left.
-std::vector<double> gas_areas(const NormalProblem& p, std::span<const double> share) {
+/// a bubble by what is left. What is taken off comes from folds, but is taken off everywhere: on folds alone caps and
+/// partitions are as curved as their pressures say, to 1 % and not 2 to 6, but three bubbles meet at 115 degrees.
+std::vector<double> gas_areas(const NormalProblem& p) {
     std::vector<double> area = p.geometry.area;
     const std::vector<Vec3> nothing(area.size());
     std::vector<std::vector<std::size_t>> members(p.gas.size());
@@ -305,7 +284,7 @@ std::vector<double> gas_areas(const NormalProblem& p, std::span<const double> sh
         if (!p.gas[r].closed || p.gas[r].burst || members[r].empty()) continue;
         const RimPiece* rim = rim_of(p, r);
         auto directions = rim == nullptr ? all_directions() : directions_on(rim->b, OnPlate::kGas);
-        FreeCluster(p, std::move(members[r]), std::move(directions)).remove_resultant(area, nothing, share);
+        FreeCluster(p, std::move(members[r]), std::move(directions)).remove_resultant(area, nothing, p.geometry.area);
     }
     return area;
 }
@@ -380,12 +359,11 @@ NormalStep move_along_normals(const NormalProblem& p) {
     const std::size_t count = p.coarse.size();
     const Pairs pairs = pair_strengths(p);
     const std::vector<FreeCluster> free = free_clusters(p);
-    const std::vector<double> share = shares_of_error(p, pairs);
-    const std::vector<double> gas_area = gas_areas(p, share);
+    const std::vector<double> gas_area = gas_areas(p);
     std::vector<double> force = forces(p, pairs, gas_area);
     std::vector<Vec3> beside(p.internal.begin(), p.internal.end());
     for (std::size_t i = 0; p.floating && i < count; ++i) beside[i] += p.external[i];
-    for (const FreeCluster& cluster : free) cluster.remove_resultant(force, beside, share);
+    for (const FreeCluster& cluster : free) cluster.remove_resultant(force, beside, p.geometry.area);
 
     const FilmStiffness stiffness(p, pairs);
     const double implicit = p.theta * p.theta * p.dt * p.dt, mixed = p.theta * (1.0 - p.theta) * p.dt * p.dt;
