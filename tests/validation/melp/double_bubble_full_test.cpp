@@ -85,59 +85,5 @@ steps_per_period = 90.0
     }
 }
 
-/// Gas volumes that end as caps of 5 and 3 cm: the partition is as curved as their pressures say. [method sheet 14: V3]
-TEST(DoubleBubble, HasThePartitionOfItsCaps) {
-    auto solver = solver_of(R"(
-[material]
-surface_tension = 0.0725
-thickness = 5e-7
-[[bubble]]
-center = [-0.0494, 0.0, 0.0]
-radius = 0.04926
-[[bubble]]
-center = [0.0263, 0.0, 0.0]
-radius = 0.02616
-[resolution]
-edge_length = 0.0026
-[melp]
-fine_ratio = 0
-theta = 1.0
-damping = 500.0
-steps_per_period = 45.0
-)");
-    solver->start({});
-    for (const double time : {0.015, 0.03, 0.045, 0.06}) {
-        while (solver->time() < time) solver->advance(time);
-        const Cap a = cap_of(*solver, 0), b = cap_of(*solver, 1);
-        const double expected = 1.0 / b.radius - 1.0 / a.radius;
-        const double pressures =
-            (solver->gas()[1].balanced - solver->gas()[0].balanced) / (2.0 * 0.0725);
-        // Where films are doubled all the way around.
-        const Vec3 axis = (b.center - a.center) / norm(b.center - a.center);
-        double wide = 0.0;
-        std::vector<double> away(solver->coarse().size());
-        std::vector<std::uint8_t> doubled(away.size(), 0);
-        const Neighbors& other = solver->geometry().neighbors.other;
-        for (std::size_t i = 0; i < away.size(); ++i) {
-            const Vec3 d = solver->coarse().position[i] - a.center;
-            away[i] = norm(d - dot(d, axis) * axis);
-            double gamma = 0.0;
-            for (std::size_t k = other.begin(i); k < other.end(i); ++k)
-                gamma += solver->geometry().area[other.index[k]] * other.weight[k];
-            doubled[i] = gamma > 0.5 ? 1 : 0;
-            if (gamma > 0.5) wide = std::max(wide, away[i]);
-        }
-        const double inner = wide - 3.0 * solver->spacing();
-        const Cap partition =
-            sphere_through(*solver, [&](std::size_t i) { return doubled[i] != 0 && away[i] < inner; });
-        std::printf("t %.3f caps %.5f %.5f curvature %.3f, from caps %.3f, from pressures %.3f; angle %.2f wide %.4f\n",
-                    time, a.radius, b.radius, 1.0 / partition.radius, expected, pressures, angle_between(a, b), wide);
-        std::fflush(stdout);
-        if (time < 0.04) continue;
-        EXPECT_NEAR(1.0 / partition.radius / expected, 1.0, 0.015);
-        EXPECT_NEAR(angle_between(a, b), 120.0, 1.2);
-    }
-}
-
 }  // namespace
 }  // namespace lamella::melp
