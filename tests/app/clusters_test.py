@@ -93,7 +93,7 @@ class Clusters(ProgramTest):
         whole = self.folder / "whole"
         self.assert_exit(lamella("run", self.scene, "--out", whole), 0)
         half = self.folder / "half"
-        self.assert_exit(mpirun(2, "run", self.scene, "--out", half, "--until", "0.33"), 0)
+        self.assert_exit(mpirun(2, "run", self.scene, "--out", half, "--until", "0.3"), 0)
         for processes in (1, 3, 4):
             folder = self.folder / f"resumed{processes}"
             shutil.copytree(half, folder)
