@@ -63,6 +63,7 @@ BENCHMARK(sheet_step<kCube>)
 BENCHMARK(sheet_step<kDoubleBubble>)->Args({1500, 1})->Iterations(60)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 BENCHMARK(sheet_step<kCube>)
     ->Args({224, 1})
+    ->Args({224, 2})
     ->Args({112, 1})
     ->Args({71, 1})
     ->Args({71, 2})

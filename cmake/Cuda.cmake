@@ -1,7 +1,6 @@
-# LAMELLA_CUDA: AUTO builds what runs on a GPU where nvcc is found and works, ON insists on it, OFF (until a machine with a GPU
-# has run it) leaves it out; cuda/ is a project of its own that builds it alone. Sets
-# LAMELLA_HAS_CUDA.
-set(LAMELLA_CUDA OFF CACHE STRING "Build what runs on a GPU: AUTO, ON or OFF")
+# LAMELLA_CUDA: AUTO builds what runs on a GPU where nvcc is found and works, ON insists on it, OFF leaves it out; cuda/ is a
+# project of its own that builds it alone. Sets LAMELLA_HAS_CUDA.
+set(LAMELLA_CUDA AUTO CACHE STRING "Build what runs on a GPU: AUTO, ON or OFF")
 set_property(CACHE LAMELLA_CUDA PROPERTY STRINGS AUTO ON OFF)
 set(LAMELLA_HAS_CUDA OFF)
 if(LAMELLA_CUDA STREQUAL OFF)

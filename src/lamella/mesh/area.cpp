@@ -5,8 +5,10 @@
 #include "lamella/mesh/detail/triangle.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
+#include <vector>
 
 namespace lamella::mesh {
 namespace {
@@ -23,13 +25,16 @@ IdVector<FaceId, Value> for_each_face(const FoamMesh& mesh, Function&& function)
 
 template <class Tension>
 IdVector<VertexId, Vec3> weighted_area_gradient(const FoamMesh& mesh, Tension&& tension) {
-    IdVector<VertexId, Vec3> gradient(mesh.position.size());
-    for (const FaceId f : mesh.faces.ids()) {
+    std::vector<std::array<Vec3, 3>> slope(mesh.faces.size());
+    parallel_for(slope.size(), [&](std::size_t i) {
+        const auto f = static_cast<FaceId>(i);
         const detail::Triangle x = detail::triangle(mesh, f);
         const Vec3 half_normal = 0.5 * tension(f) * detail::direction(detail::doubled_area_vector(x));
-        for (std::size_t k = 0; k < 3; ++k)
-            gradient[mesh.faces[f].vertices[k]] += cross(half_normal, detail::opposite_edge(x, k));
-    }
+        for (std::size_t k = 0; k < 3; ++k) slope[i][k] = cross(half_normal, detail::opposite_edge(x, k));
+    });
+    IdVector<VertexId, Vec3> gradient(mesh.position.size());
+    for (const FaceId f : mesh.faces.ids())
+        for (std::size_t k = 0; k < 3; ++k) gradient[mesh.faces[f].vertices[k]] += slope[index(f)][k];
     return gradient;
 }
 

@@ -1,13 +1,14 @@
 #include "lamella/mesh/vertex_regions.h"
 
-#include "lamella/mesh/vertex_corners.h"
-
 #include <algorithm>
 
 namespace lamella::mesh {
 
 VertexRegions vertex_regions(const FoamMesh& mesh, WhichRegions which) {
-    const VertexCorners corners = vertex_corners(mesh);
+    return vertex_regions(mesh, vertex_corners(mesh), which);
+}
+
+VertexRegions vertex_regions(const FoamMesh& mesh, const VertexCorners& corners, WhichRegions which) {
     VertexRegions regions;
     regions.start.reserve(mesh.position.size() + 1);
     regions.start.push_back(0);

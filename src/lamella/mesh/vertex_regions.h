@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lamella/mesh/foam_mesh.h"
+#include "lamella/mesh/vertex_corners.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -36,5 +37,9 @@ struct VertexRegions {
 
 /// The regions that touch each vertex through its faces.
 VertexRegions vertex_regions(const FoamMesh& mesh, WhichRegions which = WhichRegions::kAll);
+/// The same with the corners of the mesh at hand.
+VertexRegions vertex_regions(const FoamMesh& mesh,
+                             const VertexCorners& corners,
+                             WhichRegions which = WhichRegions::kAll);
 
 }  // namespace lamella::mesh

@@ -1,6 +1,11 @@
 #include "lamella/mesh/volume.h"
 
+#include "lamella/core/parallel.h"
 #include "lamella/mesh/detail/triangle.h"
+
+#include <array>
+#include <optional>
+#include <vector>
 
 namespace lamella::mesh {
 namespace {
@@ -39,14 +44,25 @@ IdVector<RegionId, double> region_volumes(const FoamMesh& mesh) {
 VolumeGradient volume_gradient(const FoamMesh& mesh, WhichRegions which) {
     VolumeGradient gradient{vertex_regions(mesh, which), {}};
     gradient.value.resize(gradient.entries.region.size());
-    for (const FaceId f : mesh.faces.ids()) {
+    struct Share {
+        Vec3 third;  // of the face's area vector
+        std::array<std::optional<std::size_t>, 3> back, front;
+    };
+    std::vector<Share> shares(mesh.faces.size());
+    parallel_for(shares.size(), [&](std::size_t i) {
+        const auto f = static_cast<FaceId>(i);
         const Face& face = mesh.faces[f];
-        const Vec3 third = detail::doubled_area_vector(detail::triangle(mesh, f)) / 6.0;
-        for (const VertexId v : face.vertices) {
-            if (const auto entry = gradient.entries.find(v, face.back)) gradient.value[*entry] += third;
-            if (const auto entry = gradient.entries.find(v, face.front)) gradient.value[*entry] -= third;
+        shares[i].third = detail::doubled_area_vector(detail::triangle(mesh, f)) / 6.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            shares[i].back[k] = gradient.entries.find(face.vertices[k], face.back);
+            shares[i].front[k] = gradient.entries.find(face.vertices[k], face.front);
         }
-    }
+    });
+    for (const Share& share : shares)
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (share.back[k]) gradient.value[*share.back[k]] += share.third;
+            if (share.front[k]) gradient.value[*share.front[k]] -= share.third;
+        }
     return gradient;
 }
 

@@ -31,6 +31,16 @@ constexpr double kWidestSingle = 1e6;   // in units of delta: beyond it float ru
 bool finite(const Vec3& a) { return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]); }
 
 void check_finite(std::span<const Vec3> values, const char* name) {
+    const bool all = parallel_reduce(
+                         values.size(), 1,
+                         [&](std::size_t begin, std::size_t end) {
+                             return std::all_of(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                values.begin() + static_cast<std::ptrdiff_t>(end), finite)
+                                        ? 1
+                                        : 0;
+                         },
+                         [](int a, int b) { return a & b; }) != 0;
+    if (all) return;
     for (std::size_t i = 0; i < values.size(); ++i)
         if (!finite(values[i]))
             throw InputError(fmt::format("vortex_sum: {}[{}] = ({}, {}, {}) is not finite", name, i, values[i][0],
@@ -49,7 +59,7 @@ void check(std::span<const Vec3> targets,
         throw InputError(fmt::format("vortex_sum: {} centers but {} strengths", centers.size(), strengths.size()));
     if (std::max(targets.size(), centers.size()) > std::numeric_limits<std::uint32_t>::max() / 16)
         throw InputError(fmt::format("vortex_sum: {} points are too many", std::max(targets.size(), centers.size())));
-    check_finite(targets, "targets");
+    if (targets.data() != centers.data() || targets.size() != centers.size()) check_finite(targets, "targets");
     check_finite(centers, "centers");
     check_finite(strengths, "strengths");
 }
@@ -90,15 +100,17 @@ Scale scale_of(std::span<const Vec3> targets,
 
 std::vector<Vec3> scaled_points(std::span<const Vec3> points, const Scale& scale) {
     std::vector<Vec3> scaled(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
+    parallel_for(points.size(), [&](std::size_t i) {
         for (std::size_t k = 0; k < 3; ++k) scaled[i][k] = (points[i][k] - scale.middle[k]) / scale.delta;
+    });
     return scaled;
 }
 
 std::vector<Vec3> scaled_strengths(std::span<const Vec3> strengths, const Scale& scale) {
-    std::vector<Vec3> scaled(strengths.begin(), strengths.end());
-    for (Vec3& g : scaled)
-        for (std::size_t k = 0; k < 3; ++k) g[k] /= scale.strength;
+    std::vector<Vec3> scaled(strengths.size());
+    parallel_for(strengths.size(), [&](std::size_t i) {
+        for (std::size_t k = 0; k < 3; ++k) scaled[i][k] = strengths[i][k] / scale.strength;
+    });
     return scaled;
 }
 
@@ -108,11 +120,12 @@ SumColumns sum_directly(const std::vector<Vec3>& targets,
                         const PairLaw& law) {
     SourceColumns sources;
     sources.resize(centers.size());
-    for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t i = 0; i < centers.size(); ++i) {
+    parallel_for(centers.size(), [&](std::size_t i) {
+        for (std::size_t k = 0; k < 3; ++k) {
             sources.position[k][i] = centers[i][k];
             sources.strength[k][i] = strengths[i][k];
         }
+    });
     const SourceRange all{0, static_cast<std::uint32_t>(centers.size())};
     SumColumns sums;
     const std::size_t components = law.with_potential ? 6 : 3;
@@ -154,11 +167,12 @@ VortexField with_units(const SumColumns& sums, const Scale& scale, bool with_pot
     const double potential_unit = scale.strength / (4.0 * std::numbers::pi * scale.delta);
     const double velocity_unit = potential_unit / scale.delta;
     VortexField field{std::vector<Vec3>(count), std::vector<Vec3>(with_potential ? count : 0)};
-    for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t i = 0; i < count; ++i) field.velocity[i][k] = velocity_unit * sums[k][i];
-        for (std::size_t i = 0; i < field.potential.size(); ++i)
-            field.potential[i][k] = potential_unit * sums[3 + k][i];
-    }
+    parallel_for(count, [&](std::size_t i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            field.velocity[i][k] = velocity_unit * sums[k][i];
+            if (with_potential) field.potential[i][k] = potential_unit * sums[3 + k][i];
+        }
+    });
     return field;
 }
 
@@ -170,18 +184,20 @@ VortexField vortex_sum(std::span<const Vec3> targets,
                        const VortexSumOptions& options,
                        bool with_potential) {
     check(targets, centers, strengths, options);
-    const VortexField zero{std::vector<Vec3>(targets.size()), std::vector<Vec3>(with_potential ? targets.size() : 0)};
-    if (targets.empty() || centers.empty()) return zero;
+    const auto zero = [&] {
+        return VortexField{std::vector<Vec3>(targets.size()), std::vector<Vec3>(with_potential ? targets.size() : 0)};
+    };
+    if (targets.empty() || centers.empty()) return zero();
     const Scale scale = scale_of(targets, centers, strengths, options.delta);
-    if (scale.strength == 0.0) return zero;
+    if (scale.strength == 0.0) return zero();
 
     using Method = VortexSumOptions::Method;
     const bool single = options.precision == VortexSumOptions::Precision::kSingle && scale.spread <= kWidestSingle;
     const PairLaw law{options.kernel, with_potential, single};
     const ClusterRule rule = detail::cluster_rule(options.tolerance);
     const bool on_device = options.device != Device::kCpu && options.method != Method::kTree;
-    const bool tree = options.method == Method::kTree ||
-                      (!on_device && options.method == Method::kAuto && tree_is_faster(targets.size(), centers.size(), rule, single));
+    const bool tree = options.method == Method::kTree || (!on_device && options.method == Method::kAuto &&
+                                                          tree_is_faster(targets.size(), centers.size(), rule, single));
     const bool same = targets.data() == centers.data() && targets.size() == centers.size();
     const std::vector<Vec3> sources = scaled_points(centers, scale);
     const std::vector<Vec3> points = same ? std::vector<Vec3>{} : scaled_points(targets, scale);

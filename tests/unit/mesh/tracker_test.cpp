@@ -1,14 +1,16 @@
 #include "lamella/mesh/tracker.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <numbers>
-
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
+#include "lamella/mesh/edge_faces.h"
 #include "lamella/mesh/shapes/power_cluster.h"
+#include "lamella/mesh/shapes/standard_clusters.h"
+
+#include <gtest/gtest.h>
+
 #include "popping.h"
+#include <algorithm>
+#include <numbers>
 
 namespace lamella::mesh {
 namespace {
@@ -48,6 +50,84 @@ TEST(Tracker, LeavesACatenoidThatCanStandStanding) {
     for (int step = 0; step < 400; ++step) flow.advance();
     EXPECT_NEAR(total_area(flow.tracker.mesh()) / 5.991797, 1.0, 0.004);  // the 48-gon lacks 0.28 % of the ring
     EXPECT_TRUE(flow.tracker.take_events().empty());
+}
+
+/// The widest angle opposite to an edge of a triple line [degrees], and where.
+struct WideCorner {
+    double angle = 0.0, edge_length = 0.0;
+    FaceId face;
+    std::size_t corner = 0;
+};
+WideCorner widest_at_triple_lines(const FoamMesh& mesh) {
+    WideCorner widest;
+    const EdgeFaces edges = edge_faces(mesh);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges.of(e).size() != 3) continue;
+        for (const EdgeUse& use : edges.of(e)) {
+            const auto& v = mesh.faces[use.face].vertices;
+            const Vec3 at = mesh.position[v[use.opposite]];
+            const Vec3 a = mesh.position[v[(use.opposite + 1) % 3]] - at,
+                       b = mesh.position[v[(use.opposite + 2) % 3]] - at;
+            const double angle = std::atan2(norm(cross(a, b)), dot(a, b)) * 180.0 / std::numbers::pi;
+            if (angle > widest.angle) widest = {angle, norm(a - b), use.face, use.opposite};
+        }
+    }
+    return widest;
+}
+
+/// Three bubbles in a row, the middle one a thin disk: its rim is a strip between two triple lines of `sides` vertices.
+FoamMesh thin_bubble_between_two(std::size_t sides, double thickness) {
+    FoamMesh mesh;
+    mesh.regions.push_back({RegionKind::kOpen, 0.0});
+    for (int i = 0; i < 3; ++i) mesh.regions.push_back({});
+    const double x[2] = {-0.5 * thickness, 0.5 * thickness};
+    const Vec3 inside[4] = {{}, {{-0.7, 0, 0}}, {{0, 0, 0}}, {{0.7, 0, 0}}};
+    std::vector<VertexId> ring[2];
+    VertexId center[2], apex[2];
+    for (std::size_t side : {0U, 1U}) {
+        for (std::size_t k = 0; k < sides; ++k) {
+            const double angle = 2.0 * std::numbers::pi * (static_cast<double>(k) + 0.5 * static_cast<double>(side)) /
+                                 static_cast<double>(sides);
+            ring[side].push_back(mesh.add_vertex({{x[side], std::cos(angle), std::sin(angle)}}));
+        }
+        center[side] = mesh.add_vertex({{x[side], 0, 0}});
+        apex[side] = mesh.add_vertex({{side == 0 ? -1.0 : 1.0, 0, 0}});
+    }
+    const auto add = [&](VertexId a, VertexId b, VertexId c, std::uint32_t back, std::uint32_t front) {
+        const Vec3& p = mesh.position[a];
+        const bool away = dot(cross(mesh.position[b] - p, mesh.position[c] - p), p - inside[back]) > 0.0;
+        mesh.add_face(a, away ? b : c, away ? c : b, RegionId{back}, RegionId{front});
+    };
+    for (std::size_t k = 0; k < sides; ++k) {
+        const std::size_t next = (k + 1) % sides;
+        for (const std::size_t side : {0U, 1U}) {
+            const std::uint32_t outer = side == 0 ? 1 : 3;
+            add(ring[side][k], ring[side][next], center[side], outer, 2);
+            add(ring[side][k], ring[side][next], apex[side], outer, 0);
+        }
+        add(ring[0][k], ring[0][next], ring[1][k], 2, 0);
+        add(ring[1][k], ring[1][next], ring[0][next], 2, 0);
+    }
+    return mesh;
+}
+
+TEST(Tracker, SplitsATripleLineBelowTheCornerOfAnotherThatLiesOnIt) {
+    // Where the strip has lost its width no flip can help, and a collapse along it would tie the lines together at the
+    // wrong place.
+    FoamMesh mesh = thin_bubble_between_two(12, 0.3);
+    const WideCorner narrow = widest_at_triple_lines(mesh);
+    const auto& v = mesh.faces[narrow.face].vertices;
+    const Vec3 middle = 0.5 * (mesh.position[v[(narrow.corner + 1) % 3]] + mesh.position[v[(narrow.corner + 2) % 3]]);
+    Vec3& corner = mesh.position[v[narrow.corner]];
+    corner = middle + 0.01 * (corner - middle);
+    ASSERT_EQ(faults(mesh), std::vector<std::string>{});
+    const WideCorner before = widest_at_triple_lines(mesh);
+    ASSERT_GT(before.angle, 175.0);
+    Tracker tracker(mesh, {.edge_length = before.edge_length / 0.7, .merging = false});
+    const RemeshReport report = tracker.remesh();
+    EXPECT_EQ(report.separations, 1);
+    EXPECT_LT(widest_at_triple_lines(tracker.mesh()).angle, 150.0);
+    EXPECT_EQ(faults(tracker.mesh()), std::vector<std::string>{});
 }
 
 TEST(Tracker, TakesTheSameStepsOnAnyNumberOfThreads) {

@@ -53,7 +53,7 @@ void AirMass::factorize(const Surface& s) {
         std::vector<double> mass = s.vertex_area;
         for (double& m : mass) m *= shift;
         matrix_.assemble(s, 1.0, {}, mass);
-        Term& term = terms_.emplace_back(Term{weight, {}});
+        Term& term = terms_.emplace_back(Term{weight, linalg::DefiniteSolver(linalg::Refactored::kSeldom)});
         term.factors.analyze(matrix_.matrix());
         if (!term.factors.factorize(matrix_.matrix()))
             throw NumericalError("vortex_particle: the air's matrix is singular");

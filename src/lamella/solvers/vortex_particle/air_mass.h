@@ -2,7 +2,7 @@
 
 // The inertia of the air that a film moves.
 
-#include "lamella/linalg/ldlt.h"
+#include "lamella/linalg/definite_solver.h"
 #include "lamella/solvers/vortex_particle/operators.h"
 #include "lamella/solvers/vortex_particle/surface.h"
 
@@ -41,7 +41,7 @@ private:
 
     struct Term {
         double weight;
-        linalg::Ldlt factors;
+        linalg::DefiniteSolver factors;
     };
     double density_, constant_ = 0.0, middle_ = 0.0;
     VertexMatrix matrix_;

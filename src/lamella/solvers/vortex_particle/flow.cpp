@@ -12,6 +12,10 @@ namespace {
 constexpr double kLaggingTolerance = 1e-10;
 constexpr int kMostIterations = 200;
 
+linalg::Refactored refactored(Films films) {
+    return films == Films::kMoving ? linalg::Refactored::kOften : linalg::Refactored::kSeldom;
+}
+
 /// Numbers the unknowns: one per vertex, but none where `fixed`.
 template <class Fixed>
 std::vector<int> numbered(const Surface& s, Fixed&& fixed) {
@@ -59,7 +63,8 @@ std::vector<int> stream_unknowns(const Surface& s) {
 
 }  // namespace
 
-FlowSolver::Poisson::Poisson(const Surface& s, std::vector<int> unknown) : matrix(s, std::move(unknown)) {
+FlowSolver::Poisson::Poisson(const Surface& s, std::vector<int> unknown, Films films)
+    : matrix(s, std::move(unknown)), factors(refactored(films)) {
     if (matrix.size() == 0) return;
     matrix.assemble(s, 1.0, {}, {});
     factors.analyze(matrix.matrix());
@@ -99,7 +104,7 @@ std::vector<double> FlowSolver::Poisson::solve(const Surface& s,
         return spread(x);
     }
     const std::vector<double> b = x;
-    factors.solve(x);
+    factors.precondition(x);
     const auto apply = [&](const std::vector<double>& p, std::vector<double>& y) {
         std::vector<double> image(s.vertices(), 0.0);
         add_stiffness(s, 1.0, {}, spread(p), image);
@@ -107,7 +112,7 @@ std::vector<double> FlowSolver::Poisson::solve(const Surface& s,
     };
     const auto precondition = [&](const std::vector<double>& p, std::vector<double>& y) {
         y = p;
-        factors.solve(y);
+        factors.precondition(y);
     };
     const auto done =
         linalg::preconditioned_conjugate_gradient(apply, precondition, b, x, kLaggingTolerance, kMostIterations);
@@ -115,7 +120,10 @@ std::vector<double> FlowSolver::Poisson::solve(const Surface& s,
     return spread(x);
 }
 
-FlowSolver::FlowSolver(const Surface& s) : stream_(s, stream_unknowns(s)), potential_(s, potential_unknowns(s)) {}
+FlowSolver::FlowSolver(const Surface& s, Films films)
+    : stream_(s, stream_unknowns(s), films),
+      potential_(s, potential_unknowns(s), films),
+      lagging_(films == Films::kMoving) {}
 
 void FlowSolver::factorize(const Surface& s) {
     stream_.factorize(s);
@@ -154,7 +162,8 @@ std::vector<int> all_vertices(const Surface& s) {
 
 }  // namespace
 
-ShiftedStiffness::ShiftedStiffness(const Surface& s) : matrix_(s, all_vertices(s)) {
+ShiftedStiffness::ShiftedStiffness(const Surface& s, Films films)
+    : matrix_(s, all_vertices(s)), factors_(refactored(films)) {
     factors_.analyze(matrix_.matrix());
 }
 
@@ -173,7 +182,7 @@ int ShiftedStiffness::solve_lagging(const Surface& s,
                                     std::span<const double> mass,
                                     std::vector<double>& x) const {
     const std::vector<double> b = x;
-    factors_.solve(x);
+    factors_.precondition(x);
     const auto apply = [&](const std::vector<double>& p, std::vector<double>& y) {
         y.resize(p.size());
         for (std::size_t v = 0; v < p.size(); ++v) y[v] = mass[v] * p[v];
@@ -181,7 +190,7 @@ int ShiftedStiffness::solve_lagging(const Surface& s,
     };
     const auto precondition = [&](const std::vector<double>& p, std::vector<double>& y) {
         y = p;
-        factors_.solve(y);
+        factors_.precondition(y);
     };
     return linalg::preconditioned_conjugate_gradient(apply, precondition, b, x, kLaggingTolerance, kMostIterations)
         .iterations;

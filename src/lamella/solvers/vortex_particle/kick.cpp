@@ -126,7 +126,7 @@ public:
         x = y;
         const std::span speed(x.data(), speeds_);
         for (double& s : speed) s *= inertia_;
-        p_.membrane.solve(speed);
+        p_.membrane.precondition(speed);
         const std::size_t count = gas_.region.size();
         std::vector<double> growth(count);
         for (std::size_t r = 0; r < count; ++r)
@@ -140,7 +140,7 @@ public:
         const std::vector<double> stretch = stretch_of(x);
         const std::span soap(x.data() + speeds_, soap_);
         for (std::size_t v = 0; v < soap_; ++v) soap[v] = soap[v] / width_ - 0.5 * stretch[v];
-        p_.surfactant->factors->solve(soap);
+        p_.surfactant->factors->precondition(soap);
     }
 
     std::vector<double> stretch_of(const std::vector<double>& x) const {

@@ -2,7 +2,7 @@
 
 // Films as a membrane: the directions in which their vertices move, and what tension does to such motions.
 
-#include "lamella/linalg/ldlt.h"
+#include "lamella/linalg/definite_solver.h"
 #include "lamella/linalg/symmetric_matrix.h"
 #include "lamella/mesh/foam_mesh.h"
 #include "lamella/solvers/vortex_particle/surface.h"
@@ -46,9 +46,10 @@ public:
     /// M' as assembled last times x.
     void multiply(std::span<const double> x, std::span<double> y) const { linalg::multiply(matrix_, x, y); }
     double mean_inertia() const;
-    /// Keeps the factors of M' for `solve`; those of another step precondition this one.
+    /// Keeps the factors of M'; those of another step precondition this one.
     void factorize();
     void solve(std::span<double> x) const { factors_.solve(x); }
+    void precondition(std::span<double> x) const { factors_.precondition(x); }
 
     /// For each vertex the cluster of films that hang together; whether a wire holds it.
     std::span<const std::uint32_t> cluster() const { return cluster_; }
@@ -62,7 +63,7 @@ private:
     std::vector<std::uint32_t> cluster_;
     std::vector<std::uint8_t> held_;
     linalg::SymmetricMatrix matrix_;
-    linalg::Ldlt factors_;
+    linalg::DefiniteSolver factors_{linalg::Refactored::kOften};
     std::vector<std::size_t> slot_start_;  ///< #T + 1, into the following: pairs of unknowns of each triangle
     struct Pair {
         std::uint8_t k, l;   ///< corners

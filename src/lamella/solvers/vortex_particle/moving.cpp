@@ -104,10 +104,9 @@ void VortexParticleSolver::settle_volumes() {
 void VortexParticleSolver::take_films(FoamMesh mesh) {
     surface_ = surface_of(mesh, options_.walls);
     transfer_ = Transfer(surface_, options_.transfer, options_.kernel_radius * surface_.longest_edge);
-    flow_solver_ = FlowSolver(surface_);
-    flow_solver_.set_lagging(true);
-    diffusion_ = ShiftedStiffness(surface_);
-    compression_ = ShiftedStiffness(surface_);
+    flow_solver_ = FlowSolver(surface_, Films::kMoving);
+    diffusion_ = ShiftedStiffness(surface_, Films::kMoving);
+    compression_ = ShiftedStiffness(surface_, Films::kMoving);
     auto moving = std::make_unique<Moving>(mesh, surface_);
     if (moving_) {
         moving->velocity = std::move(moving_->velocity);

@@ -22,8 +22,8 @@ using mesh::FoamMesh;
 using mesh::RegionId;
 using mesh::VertexId;
 
-/// Clusters of balls begin as cells of up to twice the volume that their gas has, with uneven triangles. They are shrunk
-/// before the air is there: in the course of the run it would be stirred up by that.
+/// Clusters of balls begin as cells of up to twice the volume that their gas has, with uneven triangles. They are
+/// shrunk before the air is there: in the course of the run it would be stirred up by that.
 void VortexSheetSolver::settle_volumes() {
     constexpr double kSettled = 1e-6;  // relative
     constexpr int kMostRounds = 200;
@@ -43,9 +43,10 @@ void VortexSheetSolver::check_triangles() const {
     constexpr double kSharpest = 1.0;  // degrees
     const double degrees = mesh::min_angle(mesh()) * 180.0 / std::numbers::pi;
     if (degrees < kSharpest)
-        throw NumericalError(fmt::format("t = {:.6g} s, step {}: a triangle has an angle of {:.2g} degrees; triangles that "
-                                         "stay as they are cannot follow these films: set vortex_sheet.remeshing = true",
-                                         time_, steps_, degrees));
+        throw NumericalError(
+            fmt::format("t = {:.6g} s, step {}: a triangle has an angle of {:.2g} degrees; triangles that "
+                        "stay as they are cannot follow these films: set vortex_sheet.remeshing = true",
+                        time_, steps_, degrees));
 }
 
 void VortexSheetSolver::restore_volumes() {
@@ -91,9 +92,10 @@ void VortexSheetSolver::edit_mesh(const std::function<void()>& edit) {
                            fmt::format("regions {} {}", index(event.a), index(event.b))});
 }
 
-/// In narrow wedges of air, as between films that have just met, large circulations of two films cancel in all but name:
-/// the flow does not see them. An edit of one film alone would set that energy free, so the jumps around it are evened out.
-/// Such jumps are large beside the velocities; those of a swing are about twice the velocities and left as they are.
+/// In narrow wedges of air, as between films that have just met, large circulations of two films cancel in all but
+/// name: the flow does not see them. An edit of one film alone would set that energy free, so the jumps around it are
+/// evened out. Such jumps are large beside the velocities; those of a swing are about twice the velocities and left as
+/// they are.
 void VortexSheetSolver::heal(const std::vector<VertexId>& edited) {
     if (edited.empty() || options_.healing == 0) return;
     constexpr double kHidden = 4.0;  // jump over mean speed: more than any swing of low order has
@@ -102,7 +104,8 @@ void VortexSheetSolver::heal(const std::vector<VertexId>& edited) {
     const auto hides_flow = [&](VertexId v) {
         for (const mesh::Corner& corner : topology_.corners.of(v)) {
             const auto& [a, b, c] = mesh().faces[corner.face].vertices;
-            const double area = 0.5 * norm(cross(mesh().position[b] - mesh().position[a], mesh().position[c] - mesh().position[a]));
+            const double area =
+                0.5 * norm(cross(mesh().position[b] - mesh().position[a], mesh().position[c] - mesh().position[a]));
             if (norm(strength[index(corner.face)]) > most * area) return true;
         }
         return false;
@@ -120,7 +123,8 @@ void VortexSheetSolver::heal(const std::vector<VertexId>& edited) {
         if (near[index(v)] != 0)
             for (std::size_t i = topology_.first(v); i < topology_.last(v); ++i)
                 entries.push_back(static_cast<std::uint32_t>(i));
-    even_out(FilmLaplacian(mesh(), topology_), entries, options_.healing, phi_);
+    const FilmLaplacian around(mesh(), topology_, [&](VertexId v) { return near[index(v)] != 0; });
+    even_out(around, entries, options_.healing, phi_);
 }
 
 /// Root of the mean square velocity of the vertices.

@@ -23,13 +23,40 @@ double half_cotangent(const FoamMesh& mesh, FaceId f, std::size_t k) {
     return area > 0.0 ? std::max(0.0, 0.5 * dot(a, b) / area) : 0.0;
 }
 
-struct Entry {
-    std::uint32_t column;
-    double value;
+/// The rows of the regions of one vertex, filled anew for each.
+class VertexRows {
+public:
+    struct Term {
+        std::uint32_t column;
+        double value;
+    };
+
+    void clear(std::size_t rows) {
+        if (rows_.size() < rows) rows_.resize(rows);
+        for (auto& row : rows_) row.clear();
+    }
+    void add(std::size_t row, std::uint32_t column, double value) {
+        for (Term& term : rows_[row])
+            if (term.column == column) {
+                term.value += value;
+                return;
+            }
+        rows_[row].push_back({column, value});
+    }
+    /// Row `row`, its columns ascending.
+    const std::vector<Term>& sorted(std::size_t row) {
+        std::sort(rows_[row].begin(), rows_[row].end(),
+                  [](const Term& a, const Term& b) { return a.column < b.column; });
+        return rows_[row];
+    }
+
+private:
+    std::vector<std::vector<Term>> rows_;
 };
 
-/// What face f adds to the rows of its corner k.
-void add_corner(const FoamMesh& mesh, const SheetTopology& topology, const Corner& corner, std::vector<Entry> row[2]) {
+/// What a face adds to the rows of its corner; those of the vertex begin with entry `first`.
+void add_corner(
+    const FoamMesh& mesh, const SheetTopology& topology, const Corner& corner, std::size_t first, VertexRows& rows) {
     const auto& entry = topology.entry[corner.face];
     for (const std::size_t step : {1U, 2U}) {
         const std::size_t other = (corner.k + step) % 3;
@@ -37,47 +64,71 @@ void add_corner(const FoamMesh& mesh, const SheetTopology& topology, const Corne
         for (const std::size_t side : {0U, 1U})
             for (const std::size_t across : {0U, 1U}) {
                 const double sign = side == across ? 1.0 : -1.0;
-                row[side].push_back({entry[corner.k][across], sign * c});
-                row[side].push_back({entry[other][across], -sign * c});
+                const std::size_t row = entry[corner.k][side] - first;
+                rows.add(row, entry[corner.k][across], sign * c);
+                rows.add(row, entry[other][across], -sign * c);
             }
     }
+}
+
+/// Film area at a vertex, a third of each triangle [m^2].
+double area_at(const FoamMesh& mesh, const SheetTopology& topology, VertexId v) {
+    double area = 0.0;
+    for (const Corner& corner : topology.corners.of(v)) {
+        const auto& u = mesh.faces[corner.face].vertices;
+        area += norm(cross(mesh.position[u[1]] - mesh.position[u[0]], mesh.position[u[2]] - mesh.position[u[0]])) / 6.0;
+    }
+    return area;
 }
 
 }  // namespace
 
 FilmLaplacian::FilmLaplacian(const FoamMesh& mesh, const SheetTopology& topology)
-    : diagonal_(topology.size(), 0.0), cell_(topology.size(), 0.0), held_(topology.size(), 0) {
-    start_.push_back(0);
-    std::vector<std::vector<Entry>> rows;
-    for (const VertexId v : mesh.position.ids()) {
-        const std::size_t first = topology.first(v), regions = topology.last(v) - first;
-        rows.assign(regions, {});
-        double area = 0.0;
-        for (const Corner& corner : topology.corners.of(v)) {
-            std::vector<Entry> sides[2];
-            add_corner(mesh, topology, corner, sides);
-            for (const std::size_t side : {0U, 1U}) {
-                auto& row = rows[topology.entry[corner.face][corner.k][side] - first];
-                row.insert(row.end(), sides[side].begin(), sides[side].end());
+    : FilmLaplacian(mesh, topology, [](VertexId) { return true; }) {}
+
+FilmLaplacian::FilmLaplacian(const FoamMesh& mesh,
+                             const SheetTopology& topology,
+                             const std::function<bool(VertexId)>& wanted)
+    : start_(topology.size() + 1, 0),
+      diagonal_(topology.size(), 0.0),
+      cell_(topology.size(), 0.0),
+      held_(topology.size(), 0) {
+    constexpr std::size_t kBlock = 512;
+    struct Part {
+        std::vector<std::uint32_t> column;
+        std::vector<double> value;
+    };
+    const std::size_t vertices = mesh.position.size();
+    std::vector<Part> parts((vertices + kBlock - 1) / kBlock);
+    parallel_blocks(vertices, kBlock, [&](std::size_t begin, std::size_t end) {
+        Part& part = parts[begin / kBlock];
+        VertexRows rows;
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto v = static_cast<VertexId>(i);
+            if (!wanted(v)) continue;
+            const std::size_t first = topology.first(v), regions = topology.last(v) - first;
+            rows.clear(regions);
+            for (const Corner& corner : topology.corners.of(v)) add_corner(mesh, topology, corner, first, rows);
+            const double area = area_at(mesh, topology, v);
+            for (std::size_t r = 0; r < regions; ++r) {
+                const auto& row = rows.sorted(r);
+                for (const auto& term : row) {
+                    part.column.push_back(term.column);
+                    part.value.push_back(term.value);
+                    if (term.column == first + r) diagonal_[first + r] = term.value;
+                }
+                start_[first + r + 1] = row.size();
+                cell_[first + r] = 2.0 * area / static_cast<double>(regions);
+                held_[first + r] = topology.hold[v] == Hold::kRim ? 1 : 0;
             }
-            const auto& u = mesh.faces[corner.face].vertices;
-            area += norm(cross(mesh.position[u[1]] - mesh.position[u[0]], mesh.position[u[2]] - mesh.position[u[0]])) / 6.0;
         }
-        for (std::size_t r = 0; r < regions; ++r) {
-            auto& row = rows[r];
-            std::stable_sort(row.begin(), row.end(), [](const Entry& a, const Entry& b) { return a.column < b.column; });
-            for (std::size_t i = 0; i < row.size();) {
-                double sum = 0.0;
-                const std::uint32_t column = row[i].column;
-                for (; i < row.size() && row[i].column == column; ++i) sum += row[i].value;
-                column_.push_back(column);
-                value_.push_back(sum);
-                if (column == first + r) diagonal_[first + r] = sum;
-            }
-            start_.push_back(column_.size());
-            cell_[first + r] = 2.0 * area / static_cast<double>(regions);
-            held_[first + r] = topology.hold[v] == Hold::kRim ? 1 : 0;
-        }
+    });
+    for (std::size_t i = 0; i < topology.size(); ++i) start_[i + 1] += start_[i];
+    column_.reserve(start_.back());
+    value_.reserve(start_.back());
+    for (const Part& part : parts) {
+        column_.insert(column_.end(), part.column.begin(), part.column.end());
+        value_.insert(value_.end(), part.value.begin(), part.value.end());
     }
 }
 

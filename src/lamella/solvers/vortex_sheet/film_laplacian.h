@@ -2,6 +2,7 @@
 
 #include "lamella/solvers/vortex_sheet/sheet.h"
 
+#include <functional>
 #include <vector>
 
 namespace lamella::vortex_sheet {
@@ -13,6 +14,10 @@ namespace lamella::vortex_sheet {
 class FilmLaplacian {
 public:
     FilmLaplacian(const mesh::FoamMesh& mesh, const SheetTopology& topology);
+    /// The rows of the wanted vertices alone; those of all others are empty.
+    FilmLaplacian(const mesh::FoamMesh& mesh,
+                  const SheetTopology& topology,
+                  const std::function<bool(mesh::VertexId)>& wanted);
 
     /// y = K x
     void multiply(const std::vector<double>& x, std::vector<double>& y) const;

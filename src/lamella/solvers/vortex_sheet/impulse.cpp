@@ -1,5 +1,6 @@
 #include "lamella/solvers/vortex_sheet/impulse.h"
 
+#include <array>
 #include <map>
 #include <utility>
 
@@ -25,7 +26,10 @@ Vec3 solve3(const std::array<Vec3, 3>& m, const Vec3& b) {
 
 }  // namespace
 
-Vec3 impulse(const FoamMesh& mesh, const SheetTopology& topology, const SheetGeometry& geometry, const Circulation& phi) {
+Vec3 impulse(const FoamMesh& mesh,
+             const SheetTopology& topology,
+             const SheetGeometry& geometry,
+             const Circulation& phi) {
     Vec3 sum;
     for (const FaceId f : mesh.faces.ids()) sum -= mean_jump(topology, phi, f) * geometry.area_vector[index(f)];
     return sum;
@@ -48,8 +52,13 @@ Vec3 angular_impulse(const FoamMesh& mesh,
 }
 
 ImpulseControl::ImpulseControl(const FoamMesh& mesh, const SheetTopology& topology, const SheetGeometry& geometry)
-    : mesh_(mesh), topology_(topology), geometry_(geometry), held_(topology.clusters, 0),
-      outer_(topology.clusters, mesh::kOutside), volume_(topology.clusters, 0.0), center_(topology.clusters),
+    : mesh_(mesh),
+      topology_(topology),
+      geometry_(geometry),
+      held_(topology.clusters, 0),
+      outer_(topology.clusters, mesh::kOutside),
+      volume_(topology.clusters, 0.0),
+      center_(topology.clusters),
       response_(topology.clusters) {
     std::vector<double> vertices(topology.clusters, 0.0);
     for (const VertexId v : mesh.position.ids()) {
@@ -61,11 +70,17 @@ ImpulseControl::ImpulseControl(const FoamMesh& mesh, const SheetTopology& topolo
     for (std::size_t c = 0; c < held_.size(); ++c) center_[c] = center_[c] / vertices[c];
     // The region around a cluster is the one that its films enclose with negative volume.
     std::map<std::pair<std::uint32_t, RegionId>, double> enclosed;
+    auto back = enclosed.end(), front = enclosed.end();  // of the last face: the next one is mostly of the same film
+    const auto seek = [&](auto& at, std::uint32_t c, RegionId r) -> double& {
+        const std::pair key{c, r};
+        if (at == enclosed.end() || at->first != key) at = enclosed.try_emplace(key, 0.0).first;
+        return at->second;
+    };
     for (const FaceId f : mesh.faces.ids()) {
         const std::uint32_t c = topology.cluster[mesh.faces[f].vertices[0]];
         const double cone = dot(geometry.barycenter[index(f)] - center_[c], geometry.area_vector[index(f)]) / 3.0;
-        enclosed[{c, mesh.faces[f].back}] += cone;
-        enclosed[{c, mesh.faces[f].front}] -= cone;
+        seek(back, c, mesh.faces[f].back) += cone;
+        seek(front, c, mesh.faces[f].front) -= cone;
     }
     for (const auto& [key, volume] : enclosed)
         if (-volume > volume_[key.first]) {

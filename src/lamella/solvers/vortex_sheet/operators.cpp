@@ -137,19 +137,42 @@ IdVector<VertexId, Vec3> vertex_velocity(const SheetTopology& topology,
     return velocity;
 }
 
+namespace {
+
+/// The largest speed at the vertices of the faces around each vertex, its own among them.
+std::vector<double> fastest_around(const FoamMesh& mesh,
+                                   const SheetTopology& topology,
+                                   const IdVector<VertexId, Vec3>& velocity) {
+    std::vector<double> fastest(velocity.size(), 0.0);
+    for_each_vertex(topology, [&](VertexId v) {
+        for (const Corner& corner : topology.corners.of(v))
+            for (const VertexId w : mesh.faces[corner.face].vertices)
+                fastest[index(v)] = std::max(fastest[index(v)], norm(velocity[w]));
+    });
+    return fastest;
+}
+
+}  // namespace
+
 void carry_fluxes_all_the_way(const FoamMesh& start,
                               const SheetTopology& topology,
                               const SheetGeometry& geometry,
                               std::span<const double> flux,
                               double dt,
                               IdVector<VertexId, Vec3>& velocity) {
-    // Each sweep leaves about dt |grad u| of what was missing: three do, but where films snap.
+    // Each sweep leaves about dt |grad u| of what was missing: three do, but where films snap. Where that is more than
+    // all of it, sweeps lead away: a vertex whose correction is no longer small keeps the velocity that it had.
+    constexpr double kSmall = 0.5;  // of the largest speed around
     constexpr int kMostSweeps = 8;
     constexpr double kEnough = 1e-5;  // of the largest flux
     double largest = 0.0;
     for (const double w : flux) largest = std::max(largest, std::abs(w));
     std::vector<Vec3> mean(start.faces.size());
     if (topology.hold.empty()) return;
+    const IdVector<VertexId, Vec3> first = velocity;
+    const std::vector<double> fastest = fastest_around(start, topology, first);
+    std::vector<std::uint8_t> settled(topology.hold.size(), 0);
+    for (const VertexId v : topology.hold.ids()) settled[index(v)] = topology.hold[v] != Hold::kFree ? 1 : 0;
     std::vector<double> off(topology.hold.size(), 0.0);
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
         parallel_for(mean.size(), [&](std::size_t i) {
@@ -159,7 +182,7 @@ void carry_fluxes_all_the_way(const FoamMesh& start,
             mean[i] = 0.5 * cross(ab + 0.5 * way_b, ac + 0.5 * way_c) + cross(way_b, way_c) / 24.0;
         });
         for_each_vertex(topology, [&](VertexId v) {
-            if (topology.hold[v] != Hold::kFree) return;
+            if (settled[index(v)] != 0) return;
             Vec3 missing;
             double most = 0.0;
             for (std::size_t i = topology.first(v); i < topology.last(v); ++i) {
@@ -175,6 +198,10 @@ void carry_fluxes_all_the_way(const FoamMesh& start,
             }
             off[index(v)] = most;
             velocity[v] += times(geometry.inverse[v], missing);
+            if (norm(velocity[v] - first[v]) <= kSmall * fastest[index(v)]) return;
+            velocity[v] = first[v];
+            off[index(v)] = 0.0;
+            settled[index(v)] = 1;
         });
         if (*std::max_element(off.begin(), off.end()) <= kEnough * largest) return;
     }

@@ -58,8 +58,8 @@ void find_clusters(const FoamMesh& mesh, SheetTopology& topology) {
     topology.cluster.resize(mesh.position.size());
     for (const VertexId v : mesh.position.ids()) {
         const std::uint32_t r = root(static_cast<std::uint32_t>(v));
-        topology.cluster[v] = r == static_cast<std::uint32_t>(v) ? topology.clusters++
-                                                                : topology.cluster[static_cast<VertexId>(r)];
+        topology.cluster[v] =
+            r == static_cast<std::uint32_t>(v) ? topology.clusters++ : topology.cluster[static_cast<VertexId>(r)];
     }
 }
 
@@ -67,16 +67,16 @@ void find_clusters(const FoamMesh& mesh, SheetTopology& topology) {
 
 SheetTopology sheet_topology(const FoamMesh& mesh) {
     SheetTopology topology;
-    topology.entries = mesh::vertex_regions(mesh);
     topology.corners = mesh::vertex_corners(mesh);
+    topology.entries = mesh::vertex_regions(mesh, topology.corners);
     topology.entry.resize(mesh.faces.size());
-    for (const FaceId f : mesh.faces.ids()) {
+    parallel_for(mesh.faces.size(), [&](std::size_t i) {
+        const auto f = static_cast<FaceId>(i);
         const mesh::Face& face = mesh.faces[f];
         for (std::size_t k = 0; k < 3; ++k)
-            topology.entry[f][k] = {
-                static_cast<std::uint32_t>(*topology.entries.find(face.vertices[k], face.back)),
-                static_cast<std::uint32_t>(*topology.entries.find(face.vertices[k], face.front))};
-    }
+            topology.entry[f][k] = {static_cast<std::uint32_t>(*topology.entries.find(face.vertices[k], face.back)),
+                                    static_cast<std::uint32_t>(*topology.entries.find(face.vertices[k], face.front))};
+    });
     topology.hold = holds(mesh);
     find_clusters(mesh, topology);
     return topology;

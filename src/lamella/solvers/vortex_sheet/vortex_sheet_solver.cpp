@@ -193,6 +193,8 @@ double VortexSheetSolver::fitted(double dt, double time_limit) const {
 void VortexSheetSolver::kick(double dt) {
     const Circulation rate = tension_rate(mesh(), sheet_geometry(mesh(), topology_));
     for (std::size_t i = 0; i < phi_.size(); ++i) phi_[i] += dt * rate[i];
+    if (!std::all_of(phi_.begin(), phi_.end(), [](double value) { return std::isfinite(value); }))
+        throw NumericalError(fmt::format("t = {:.6g} s, step {}: circulations are not finite", time_, steps_));
     fix_gauge(topology_, phi_);
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "lamella/solvers/bubble/detail/device_decide.h"
+#include "lamella/solvers/bubble/detail/device_gather.h"
 #include "lamella/solvers/bubble/detail/device_lists.h"
 #include "lamella/solvers/bubble/detail/device_runner.h"
-#include "lamella/solvers/bubble/detail/device_step.h"
+#include "lamella/solvers/bubble/detail/device_update.h"
 
 #include <algorithm>
 #include <cmath>
