@@ -41,9 +41,9 @@ LIBRARIES = {
     r"tbb/|oneapi/tbb/": ["core"],
     r"Random123/": ["core"],
     r"cub/": ["core"],
-    r"mpi\.h": ["dist", "linalg"],  # linalg: hypre wants one
     r"Eigen/|unsupported/Eigen/": ["linalg"],
     r"HYPRE": ["linalg"],
+    r"mpi\.h": ["dist", "linalg"],
     r"hdf5": ["io"],
     r"H5[A-Za-z]*public\.h": ["io"],
     r"zlib\.h": ["io"],

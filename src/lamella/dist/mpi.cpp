@@ -1,4 +1,4 @@
-// The only source that uses MPI; its C interface, without the C++ one that some of its headers still carry.
+// The processes of MPI; its C interface, without the C++ one that some of its headers still carry.
 
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

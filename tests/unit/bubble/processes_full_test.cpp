@@ -30,7 +30,7 @@ TEST(Processes, GiveTheSameBitsBetweenWallsForLong) {
 TEST(Processes, GiveTheSameBitsAroundAVoidForLong) {
     const std::vector<Ball> balls = discs_beside_a_void(30);
     Options o = given_options(2, 54.0);
-    o.gas.exchange_rate = 5e-3;
+    o.gas.exchange_rate = 0.3;
     o.integrator.method = Method::kAbm2;
     expect_same_on<2>(kNumbers, o, 500, balls);
 }
