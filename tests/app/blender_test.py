@@ -84,4 +84,8 @@ if __name__ == "__main__":
     if shutil.which("blender") is None:
         print("blender is not installed: what it makes of lamella's files is not tested")
         sys.exit(77)
+    probe = subprocess.run(["blender", "--background", "--python-expr", "import numpy"], capture_output=True, text=True)
+    if "No module named 'numpy'" in probe.stdout + probe.stderr:
+        print("Blender's Python has no numpy (python3-numpy): what it makes of lamella's files is not tested")
+        sys.exit(77)
     unittest.main()
