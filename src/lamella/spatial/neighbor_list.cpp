@@ -221,6 +221,7 @@ void fill(const std::vector<BlockLists<D>>& blocks,
 
     const auto nobody = static_cast<std::uint32_t>(count);
     list.index.resize(list.group_start.back());
+    list.by_image = images;
     for (auto& column : list.image) column.assign(images ? list.index.size() : 0, 0.0);
     parallel_blocks(groups, kBlock / kLanes, [&](std::size_t begin, std::size_t end) {
         std::fill(list.index.begin() + static_cast<std::ptrdiff_t>(list.group_start[begin]),

@@ -33,7 +33,8 @@ struct NeighborList {
     /// The first of groups() whose balls may have copies of other processes' balls in their lists.
     std::size_t interior_groups = 0;
 
-    bool has_images() const { return !image[0].empty(); }
+    bool by_image = false;  ///< there are images: the same for all processes, also where one has no balls
+    bool has_images() const { return by_image; }
     std::size_t groups() const { return group_start.empty() ? 0 : group_start.size() - 1; }
 };
 

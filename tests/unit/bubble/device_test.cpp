@@ -113,6 +113,9 @@ TEST_P(OnDevice, MeetsBubblesThroughSeveralImagesOfASmallBox) {
     Options o = small(2, 60);
     o.end_count = 20;
     expect_the_same_run<2>(GetParam(), o, 5.0);
+    o.flow.kind = FlowKind::kUniform;  // around and around
+    o.flow.velocity = {{0.5, 0.2, 0.0}};
+    expect_the_same_run<2>(GetParam(), o, 5.0);
 }
 
 TEST_P(OnDevice, EndsWhereTheCpuEnds) {

@@ -228,6 +228,7 @@ sim::StepReport BubbleSolver<D>::advance(double time_limit) {
     const double wanted = std::min(integrator_->next_step(), options_.integrator.max_step);
     const Landing landing = clock_.landing(time_limit, time_rate_, wanted);
     const Step step = integrator_->step(*system_, landing.longest);
+    system_->follow_images();
     clock_.tick(step, landing, time_limit, time_rate_);
 
     std::vector<sim::Event> removed = remove_vanished(*system_, options_.compat.removal);

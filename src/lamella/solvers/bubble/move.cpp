@@ -1,11 +1,11 @@
 #include "lamella/solvers/bubble/move.h"
 
-#include <cmath>
+#include "lamella/core/parallel.h"
+#include "lamella/solvers/bubble/integrator.h"
 
 #include <fmt/format.h>
 
-#include "lamella/core/parallel.h"
-#include "lamella/solvers/bubble/integrator.h"
+#include <cmath>
 
 namespace lamella::bubble {
 
@@ -17,12 +17,8 @@ template <int D>
 void stage_moved(System<D>& system, const Increment<D>& increment) {
     const Foam<D>& foam = system.foam;
     parallel_for(system.length(), [&](std::size_t i) {
-        std::int32_t crossings = 0;
-        for (std::size_t k = 0; k < D; ++k) {
-            const double x = foam.position[k][i] + increment.position[k][i];
-            system.stage.position[k][i] =
-                foam.box.periodic[k] ? wrapped(x, foam.box.lengths[k], crossings) : x;
-        }
+        for (std::size_t k = 0; k < D; ++k)
+            system.stage.position[k][i] = foam.position[k][i] + increment.position[k][i];
         set_radius<D>(system.model, foam.size[i] + increment.size[i], foam.alive(i), system.stage.radius[i],
                       system.stage.inverse_radius[i]);
     });
@@ -37,9 +33,9 @@ void accept_moved(System<D>& system, const Increment<D>& increment) {
         for (std::size_t k = 0; k < D; ++k) {
             const double move = increment.position[k][i];
             squared += move * move;
-            if (foam.box.periodic[k])
-                wrapped(foam.position[k][i] + move, foam.box.lengths[k], foam.wraps[k][i]);
-            foam.position[k][i] = system.stage.position[k][i];
+            double& x = foam.position[k][i];
+            x += move;
+            if (foam.box.periodic[k]) x = wrapped(x, foam.box.lengths[k], foam.wraps[k][i]);
         }
         foam.path_length[i] += std::sqrt(squared);
         foam.size[i] += increment.size[i];

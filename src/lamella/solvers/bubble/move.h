@@ -31,11 +31,12 @@ double farthest_move(const System<D>& system) {
     return half_spacing<D>(system.foam.box.volume(), static_cast<double>(system.foam.live));
 }
 
-/// stage = current state + increment, positions wrapped into the box.
+/// stage = current state + increment. Positions are not wrapped into the box: images in lists stay right.
 template <int D>
 void stage_moved(System<D>& system, const Increment<D>& increment);
 
-/// The current state becomes `stage` (as stage_moved left it); path lengths and wrap counts follow.
+/// The current state moves by the increment and is wrapped into the box; path lengths and wrap counts follow. Before lists
+/// are used again, System::follow_images.
 template <int D>
 void accept_moved(System<D>& system, const Increment<D>& increment);
 

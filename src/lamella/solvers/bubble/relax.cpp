@@ -74,6 +74,7 @@ public:
                 if (system_.foam.box.periodic[k]) x = wrapped(x, system_.foam.box.lengths[k], crossings);
             }
         });
+        system_.follow_images();
         if (system_.expansion() >= system_.reach()) system_.rebuild();
         // Anew now and then, but not with the lists: when those are built must not change the path.
         evaluate(++iterations_ % kCheckInterval == 0 ? Stiffness::kBound : Stiffness::kSkip);

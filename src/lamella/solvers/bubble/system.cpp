@@ -1,12 +1,12 @@
 #include "lamella/solvers/bubble/system.h"
 
+#include "lamella/core/parallel.h"
+#include "lamella/dist/migration.h"
+
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
-
-#include "lamella/core/parallel.h"
-#include "lamella/dist/migration.h"
 
 namespace lamella::bubble {
 
@@ -150,6 +150,19 @@ void System<D>::rebuild(double least_reach) {
     built_position_ = stage.position;
     built_radius_ = stage.radius;
     ++rebuilds_;
+}
+
+template <int D>
+void System<D>::follow_images() {
+    if (!neighbors_.has_images()) return;
+    const double crossed = parallel_max(foam.slots, 0.0, [&](std::size_t i) {
+        for (std::size_t k = 0; k < D; ++k) {
+            const double moved = foam.position[k][i] - built_position_[k][i];
+            if (foam.box.periodic[k] && std::abs(moved) > 0.5 * foam.box.lengths[k]) return 1.0;
+        }
+        return 0.0;
+    });
+    if (domain_->largest(crossed) > 0.0) rebuild();
 }
 
 template <int D>

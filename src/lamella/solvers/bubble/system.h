@@ -56,6 +56,9 @@ public:
     /// Largest |dx| + dR of any bubble between the last rebuild and the current state.
     double expansion() const;
 
+    /// Where lists hold images and a bubble has crossed the border of the box since they were built: builds them anew.
+    void follow_images();
+
     /// Brings the copies' positions and sizes up to date: what a look at the neighbors of the current state needs.
     void refresh_copies();
 

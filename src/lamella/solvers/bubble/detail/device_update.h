@@ -57,7 +57,7 @@ private:
         v.size_rate[i] = size_rate(v, c, i);
     }
 
-    /// Stage j writes where d_(j-2) stood. The last stage is wrapped into the box.
+    /// Stage j writes where d_(j-2) stood.
     LAMELLA_HOST_DEVICE static void advance_stage(const DeviceView<D>& v,
                                                   const Control& c,
                                                   std::size_t i,
@@ -80,10 +80,6 @@ private:
                 increment(v.velocity[k][i], v.increment[1 - to][k], v.increment[to][k], first ? 0.0 : v.rate[k][i]);
             x[k] = v.position[k][i] + d;
             length += d * d;
-            std::int32_t crossings = 0;
-            const auto axis = static_cast<std::size_t>(k);
-            if (c.last_stage() && v.liquid.box.periodic[axis])
-                x[k] = wrapped(x[k], v.liquid.box.lengths[axis], crossings);
         }
         double reach = square_root(length);
         double dq = 0.0;
@@ -114,13 +110,16 @@ private:
         return bubble_error<D>(ex, eq, v.stage[i].radius, v.min_radius);
     }
 
-    /// |dx| + dR since the lists were built.
+    /// |dx| + dR since the lists were built; beyond any reach where lists hold images and the bubble has crossed the
+    /// border of the box.
     LAMELLA_HOST_DEVICE static double expansion(const DeviceView<D>& v, std::size_t i) {
         if (!v.alive(i)) return 0.0;
         double length = 0.0;
         for (int k = 0; k < D; ++k) {
             const auto axis = static_cast<std::size_t>(k);
             const double s = v.position[k][i] - v.built_position[k][i];
+            if (v.image != nullptr && v.liquid.box.periodic[axis] && std::fabs(s) > 0.5 * v.liquid.box.lengths[axis])
+                return std::numeric_limits<double>::infinity();
             const double image = s - v.liquid.box.lengths[axis] * std::nearbyint(s * v.inverse_lengths[axis]);
             length += image * image;
         }
@@ -134,9 +133,9 @@ private:
                 const auto axis = static_cast<std::size_t>(k);
                 const double move = increment_of(v, c, k, i);
                 length += move * move;
-                if (v.liquid.box.periodic[axis])
-                    wrapped(v.position[k][i] + move, v.liquid.box.lengths[axis], v.wraps[k][i]);
-                v.position[k][i] = v.stage[i].x[k];
+                double x = v.position[k][i] + move;
+                if (v.liquid.box.periodic[axis]) x = wrapped(x, v.liquid.box.lengths[axis], v.wraps[k][i]);
+                v.position[k][i] = x;
             }
             v.path_length[i] += square_root(length);
             v.size[i] += size_increment_of(v, c, i);
