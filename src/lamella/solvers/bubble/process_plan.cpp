@@ -7,7 +7,7 @@
 namespace lamella::bubble {
 namespace {
 
-// c measured on one core (docs/performance.md); the rest is what a cluster's network does within a factor of two.
+// The first is of one core of a shared machine (docs/performance.md); the others are assumed, nothing has checked them.
 template <int D>
 constexpr double kSecondsPerBubble = D == 2 ? 6e-8 : 1.2e-7;
 constexpr double kSecondsPerCopy = 2e-8;
