@@ -13,13 +13,15 @@ from program import ProgramTest, lamella
 SCRIPT = pathlib.Path(os.environ["LAMELLA_SOURCE"]) / "tools" / "blender" / "import_lamella.py"
 
 
+# Debian's Blender looks for its Python modules beside the first python3 on the PATH: it must be Debian's.
+ENVIRONMENT = os.environ | {"PATH": os.pathsep.join(("/usr/bin", "/bin", os.environ["PATH"]))}
+
+
 class Blender(ProgramTest):
 
     def blender(self, *arguments, script=SCRIPT):
-        # Debian's Blender looks for its Python modules beside the first python3 on the PATH: it must be Debian's.
-        environment = os.environ | {"PATH": os.pathsep.join(("/usr/bin", "/bin", os.environ["PATH"]))}
         return subprocess.run(["blender", "--background", "--factory-startup", "--python", script, "--", *map(str, arguments)],
-                              capture_output=True, text=True, check=False, timeout=500, env=environment)
+                              capture_output=True, text=True, check=False, timeout=500, env=ENVIRONMENT)
 
     def report(self, result):
         self.assert_exit(result, 0)
@@ -55,7 +57,8 @@ class Blender(ProgramTest):
         self.assert_exit(lamella("run", "vortex_particle/stick-small", "--out", run, "--until", "0.05"), 0)
         self.assert_exit(lamella("export", run, "--to", "glb", "--frame", "last", "--out", file), 0)
         script = self.folder / "look.py"
-        script.write_text(f"""import bpy, json, sys
+        script.write_text(f"""import bpy, json, numpy, sys
+numpy.bool = bool  # Debian 12's importer uses a name that its numpy has dropped
 bpy.ops.wm.read_factory_settings(use_empty=True)
 bpy.ops.import_scene.gltf(filepath={str(file)!r})
 seen = {{o.name: {{"size": list(o.dimensions), "at": [sum(v.co[k] for v in o.data.vertices) / len(o.data.vertices) for k in range(3)],
@@ -84,7 +87,8 @@ if __name__ == "__main__":
     if shutil.which("blender") is None:
         print("blender is not installed: what it makes of lamella's files is not tested")
         sys.exit(77)
-    probe = subprocess.run(["blender", "--background", "--python-expr", "import numpy"], capture_output=True, text=True)
+    probe = subprocess.run(["blender", "--background", "--python-expr", "import numpy"], capture_output=True, text=True,
+                           env=ENVIRONMENT)
     if "No module named 'numpy'" in probe.stdout + probe.stderr:
         print("Blender's Python has no numpy (python3-numpy): what it makes of lamella's files is not tested")
         sys.exit(77)
