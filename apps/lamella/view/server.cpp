@@ -45,7 +45,7 @@ void answer(Response& response, const std::string& type, std::string content) {
 void answer_error(Response& response, int status, const std::string& text) {
     response.status = status;
     const nlohmann::json body{{"error", text}};
-    answer(response, kJson, body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    response.set_content(body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), kJson);
 }
 
 /// The time that it takes does not tell how many characters are right.
