@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace lamella::linalg {
@@ -66,6 +67,7 @@ DefiniteMethod DefiniteSolver::method() const { return impl_->method; }
 void DefiniteSolver::solve(std::span<double> x) const {
     if (impl_->method == DefiniteMethod::kFactors) return impl_->factors.solve(x);
     constexpr double kTolerance = 1e-12;
+    constexpr double kWorst = 1e-9;  // rounding may end it before that
     constexpr int kMostIterations = 200;
     const std::vector<double> b(x.begin(), x.end());
     std::vector<double> solution(b.size(), 0.0);
@@ -77,7 +79,12 @@ void DefiniteSolver::solve(std::span<double> x) const {
         v.resize(u.size());
         impl_->cycle(u, v);
     };
-    preconditioned_conjugate_gradient(apply, cycle, b, solution, kTolerance, kMostIterations);
+    const IterativeSolution done =
+        preconditioned_conjugate_gradient(apply, cycle, b, solution, kTolerance, kMostIterations);
+    if (!(done.residual <= kWorst))
+        throw NumericalError("a stiff equation of " + std::to_string(b.size()) + " unknowns: multigrid stopped after " +
+                             std::to_string(done.iterations) +
+                             " iterations with more than 1e-9 of the right side left");
     std::copy(solution.begin(), solution.end(), x.begin());
 }
 

@@ -42,6 +42,7 @@ public:
     DefiniteMethod method() const;
 
     /// x = A^-1 x, in place: to rounding, or to a residual of 1e-12.
+    /// @throws NumericalError  multigrid does not get there
     void solve(std::span<double> x) const;
     /// x = about A^-1 x, by a symmetric positive definite operator: for conjugate gradients with a matrix near this
     /// one.
