@@ -11,7 +11,9 @@
 namespace lamella::vortex_particle {
 
 /// Two vortices of one sign, core 0.3, speed 1, in the middle of a square of side 2 pi.
-inline std::unique_ptr<VortexParticleSolver> taylor_vortices(double distance, int cells) {
+inline std::unique_ptr<VortexParticleSolver> taylor_vortices(double distance,
+                                                             int cells,
+                                                             const std::vector<std::string>& overrides = {}) {
     constexpr double kPi = 3.14159265358979323846;
     return solver_of(fmt::format(R"(
 [material]
@@ -35,7 +37,7 @@ speed = 1.0
 edge_length = {4}
 [vortex_particle]
 incompressible = true
-)", -kPi, 2 * kPi, -0.5 * distance, 0.5 * distance, 2 * kPi / cells));
+)", -kPi, 2 * kPi, -0.5 * distance, 0.5 * distance, 2 * kPi / cells), overrides);
 }
 
 struct PairRun {
