@@ -28,7 +28,9 @@ TEST(Leaves, CloseAroundEachBubble) {
             ASSERT_NE(s.neighbor[t][k], kNoNeighbor);
             EXPECT_EQ(s.region[static_cast<std::size_t>(s.neighbor[t][k])], s.region[t]);
         }
-        if (s.partner[t] != kNoPartner) EXPECT_EQ(s.partner[s.partner[t]], t);
+        if (s.partner[t] != kNoPartner) {
+            EXPECT_EQ(s.partner[s.partner[t]], t);
+        }
         EXPECT_EQ(s.partner[t] != kNoPartner, s.share[t] == 0.5);
     }
     EXPECT_GT(volume, 0.0);  // it is seen from outside

@@ -173,22 +173,58 @@ TEST(MovingFilms, GiveTheSameBitsOnOneAndTwoThreads) {
     EXPECT_EQ(runs[0]->surface().components, 1U);  // it has burst
 }
 
-TEST(MovingFilms, GoAlongWithSolids) {
-    auto solver = solver_of(kMoving);
-    solver->start({});
-    advance(*solver, 0.01);
-    const Surface& s = solver->surface();
-    const Cover cover = cover_of(s, solver->bodies(), 0.0);
+/// Where a ball covers the film wholly: what the film lacks of the ball's velocity along it, over that, in the mean.
+double lack_of_speed(const VortexParticleSolver& solver) {
+    const Surface& s = solver.surface();
+    const Cover cover = cover_of(s, solver.bodies(), 0.0);
+    const Vec3 v = solver.bodies()[0].velocity;
     double lack = 0.0, speed = 0.0;
     for (std::size_t t = 0; t < s.triangles(); ++t) {
         if (cover.share[t] < 1.0) continue;
-        const Vec3 v = solver->bodies()[0].velocity, wanted = v - dot(v, s.normal[t]) * s.normal[t];
-        lack += s.area[t] * norm(solver->observed().velocity[t] - wanted);
+        const Vec3 wanted = v - dot(v, s.normal[t]) * s.normal[t];
+        lack += s.area[t] * norm(solver.observed().velocity[t] - wanted);
         speed += s.area[t] * norm(wanted);
     }
-    EXPECT_GT(speed, 0.0);
-    EXPECT_LT(lack, 0.2 * speed);  // 0.16 measured, two edges within the solid
-    EXPECT_GT(norm(solver->bodies()[0].force), 0.0);
+    return lack / speed;
+}
+
+/// Within what the triangles resolve. Where a ball is large against the bubble, or the film under it swings fast, the film
+/// cannot: it would have to be squeezed.
+TEST(MovingFilms, GoAlongWithSolids) {
+    for (const char* film : {R"(
+[[film]]
+shape = "rectangle"
+center = [-1, -1, 0]
+u = [2, 0, 0]
+v = [0, 2, 0]
+[[solid]]
+radius = 0.25
+velocity = [1, 0, 0]
+[resolution]
+edge_length = 0.0625
+[vortex_particle.noise]
+shape = 0.01
+)",
+                             R"(
+[[bubble]]
+center = [0, 0, -0.3]
+radius = 0.3
+[[solid]]
+radius = 0.08
+velocity = [0.3, 0, 0]
+[resolution]
+edge_length = 0.02
+)"}) {
+        auto solver = solver_of(std::string(film) + R"(
+[vortex_particle]
+moving = true
+particles_per_triangle = 5
+)");
+        solver->start({});
+        advance(*solver, 0.02);
+        EXPECT_LT(lack_of_speed(*solver), 0.04) << film;
+        EXPECT_GT(norm(solver->bodies()[0].force), 0.0);
+    }
 }
 
 TEST(MovingFilms, BurstWhereTheyAreAsThinAsAsked) {

@@ -4,6 +4,7 @@
 #include "lamella/film/bursting.h"
 #include "lamella/mesh/quality.h"
 #include "lamella/mesh/staged_move.h"
+#include "lamella/solvers/vortex_particle/balance.h"
 #include "lamella/solvers/vortex_particle/moving.h"
 #include "lamella/solvers/vortex_particle/rebin.h"
 
@@ -80,6 +81,7 @@ void VortexParticleSolver::edit_films(const std::function<void()>& edit) {
     merge_crowds(surface_, most_per_triangle(), particles_, bins_);
     fit_areas(surface_, transfer_, bins_, change.touched, particles_);
     balance_circulation(surface_, bins_, particles_);
+    balance_area(surface_, bins_, particles_);
     follow_velocities(before, change);
     follow_holes(before, maps);
     join_clusters();

@@ -5,6 +5,7 @@
 #include "lamella/film/bursting.h"
 #include "lamella/film/surfactant.h"
 #include "lamella/linalg/conjugate_gradient.h"
+#include "lamella/solvers/vortex_particle/balance.h"
 #include "lamella/solvers/vortex_particle/exchange.h"
 #include "lamella/solvers/vortex_particle/moving.h"
 #include "lamella/solvers/vortex_particle/solids.h"
@@ -416,6 +417,7 @@ void VortexParticleSolver::move_particles(double dt, const MeshFlow& flow) {
     fill_empty_triangles(surface_, particles_, bins_);
     merge_crowds(surface_, most_per_triangle(), particles_, bins_);
     exchange_between_leaves(surface_, bins_, options_.leaf_exchange * dt, particles_);
+    if (moving_) balance_area(surface_, bins_, particles_);
 }
 
 /// Never fewer than splitting makes.
