@@ -115,6 +115,8 @@ FoamMesh film_of(const FilmTable& film, double h) {
             return mesh::rectangle(film.center, film.u, film.v, h, {film.focus, film.focus_radius, film.focus_edge});
         case FilmShape::kHemisphere:
             return mesh::hemisphere(film.center, film.axis, film.radius, h);
+        case FilmShape::kBallInRing:
+            return mesh::ball_in_ring(film.center, film.axis, film.radius, h);
         case FilmShape::kCylinder:
             return mesh::cylinder(film.center, film.axis, film.radius, film.separation, h);
         case FilmShape::kCatenoid:
@@ -148,6 +150,7 @@ double film_size(const FilmTable& film) {
     switch (film.shape) {
         case FilmShape::kDisk:
         case FilmShape::kHemisphere:
+        case FilmShape::kBallInRing:
         case FilmShape::kCylinder:
         case FilmShape::kCatenoid:
             return 2.0 * film.radius;

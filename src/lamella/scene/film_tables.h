@@ -64,7 +64,7 @@ struct BubbleTable {
 };
 
 enum class FilmShape {
-    kDisk, kRectangle, kHemisphere, kCylinder, kCatenoid, kFrame, kDoubleBubble, kTripleBubble, kQuadrupleBubble,
+    kDisk, kRectangle, kHemisphere, kBallInRing, kCylinder, kCatenoid, kFrame, kDoubleBubble, kTripleBubble, kQuadrupleBubble,
     kCube, kKelvin, kWeairePhelan, kMesh
 };
 
@@ -94,6 +94,7 @@ struct FilmTable {
                sim::choices<FilmShape>({{"disk", FilmShape::kDisk},
                                         {"rectangle", FilmShape::kRectangle},
                                         {"hemisphere", FilmShape::kHemisphere},
+                                        {"ball_in_ring", FilmShape::kBallInRing},
                                         {"cylinder", FilmShape::kCylinder},
                                         {"catenoid", FilmShape::kCatenoid},
                                         {"frame", FilmShape::kFrame},
@@ -104,9 +105,9 @@ struct FilmTable {
                                         {"kelvin", FilmShape::kKelvin},
                                         {"weaire_phelan", FilmShape::kWeairePhelan},
                                         {"mesh", FilmShape::kMesh}}),
-               {"what it is; frame: films from the edges of a wire frame to its center; cube: a bubble with"
-                " flat sides; kelvin and weaire_phelan:"
-                " foams that fill space; mesh: films from a file"});
+               {"what it is; ball_in_ring: a bubble that a ring holds at its equator; frame: films from the edges of a"
+                " wire frame to its center; cube: a bubble with flat sides; kelvin and weaire_phelan: foams that fill"
+                " space; mesh: films from a file"});
         option("center", center, sim::any_number(), {"of the film; of a rectangle, its first corner", "length"});
         option("axis", axis, sim::any_number(), {"normal of a disk, axis of the round shapes"});
         option("radius", radius, sim::more_than(0.0), {"of the ring or rings", "length"});

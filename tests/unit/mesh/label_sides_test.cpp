@@ -41,10 +41,14 @@ void expect_same_partition(const FoamMesh& found, const FoamMesh& expected) {
               std::pair{expected.faces[f].front, turned ? found.faces[f].back : found.faces[f].front}}) {
             const auto [it, fresh] = name.try_emplace(theirs, ours);
             ASSERT_EQ(it->second, ours) << "face " << index(f);
-            if (fresh) EXPECT_TRUE(used.insert(ours).second) << "two regions became " << index(ours);
+            if (fresh) {
+                EXPECT_TRUE(used.insert(ours).second) << "two regions became " << index(ours);
+            }
         }
     }
-    if (name.contains(kOutside)) EXPECT_EQ(name[kOutside], kOutside);
+    if (name.contains(kOutside)) {
+        EXPECT_EQ(name[kOutside], kOutside);
+    }
 }
 
 TEST(LabelSides, FindsTheRegionsOfClustersAndWireFilms) {

@@ -108,6 +108,9 @@ TEST(WireFilms, HaveTheAreasOfTheirShapes) {
     const Vec3 center{{0.1, -0.2, 0.3}}, axis{{1.0, 2.0, -0.5}};
     expect_second_order([&](double h) { return disk(center, axis, 1.0, h); }, kPi, 0.2, 30.0);
     expect_second_order([&](double h) { return hemisphere(center, axis, 1.0, h); }, 2.0 * kPi, 0.2, 25.0);
+    expect_second_order([&](double h) { return ball_in_ring(center, axis, 1.0, h); }, 4.0 * kPi, 0.2, 25.0);
+    const auto volumes = region_volumes(ball_in_ring(center, axis, 1.0, 0.1));
+    EXPECT_NEAR(volumes[RegionId{1}] / (4.0 / 3.0 * kPi), 1.0, 0.01);
     expect_second_order([&](double h) { return cylinder(center, axis, 1.0, 0.7, h); }, 2.0 * kPi * 0.7, 0.2, 30.0);
     const FoamMesh plate = rectangle(center, {{2.0, 0.0, 0.0}}, {{0.0, 0.0, 1.0}}, 0.13);
     expect_sound(plate);

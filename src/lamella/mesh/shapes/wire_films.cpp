@@ -169,16 +169,43 @@ FoamMesh rectangle(const Vec3& origin, const Vec3& u, const Vec3& v, double edge
     return net(origin, u, v, along_u, along_v);
 }
 
-FoamMesh hemisphere(const Vec3& center, const Vec3& axis, double radius, double edge_length) {
+namespace {
+
+/// Closes the half of a sphere on its rim, upwards or downwards.
+void close_dome(Revolution& film, const std::vector<VertexId>& rim, double radius, double up) {
+    film.close(rim, 0.5 * kPi * radius, [=](double s) {
+        const double angle = 0.5 * kPi * s;
+        return std::array<double, 2>{s < 1.0 ? radius * std::cos(angle) : 0.0, up * radius * std::sin(angle)};
+    });
+}
+
+void require_dome(double radius, double edge_length) {
     detail::require_positive(radius, "radius of the hemisphere");
     detail::require_positive(edge_length, "edge length");
-    detail::require_affordable(2.0 * kPi * radius * radius, edge_length);
+    detail::require_affordable(4.0 * kPi * radius * radius, edge_length);
+}
+
+}  // namespace
+
+FoamMesh hemisphere(const Vec3& center, const Vec3& axis, double radius, double edge_length) {
+    require_dome(radius, edge_length);
     FoamMesh mesh = empty_film();
     Revolution film(mesh, Axis(center, axis), edge_length, kInside, kOutside);
-    film.close(film.ring(radius, 0.0, true), 0.5 * kPi * radius, [=](double s) {
-        const double angle = 0.5 * kPi * s;
-        return std::array<double, 2>{s < 1.0 ? radius * std::cos(angle) : 0.0, radius * std::sin(angle)};
-    });
+    close_dome(film, film.ring(radius, 0.0, true), radius, 1.0);
+    return mesh;
+}
+
+FoamMesh ball_in_ring(const Vec3& center, const Vec3& axis, double radius, double edge_length) {
+    constexpr RegionId kBelow{2};
+    require_dome(radius, edge_length);
+    FoamMesh mesh = detail::empty_mesh(2, RegionKind::kOpen);
+    mesh.regions[kInside] = {RegionKind::kClosed, 4.0 / 3.0 * kPi * radius * radius * radius};
+    Revolution upper(mesh, Axis(center, axis), edge_length, kInside, kOutside);
+    const auto rim = upper.ring(radius, 0.0, true);
+    close_dome(upper, rim, radius, 1.0);
+    // Seen from the same side its faces turn the other way.
+    Revolution lower(mesh, Axis(center, axis), edge_length, kBelow, kInside);
+    close_dome(lower, rim, radius, -1.0);
     return mesh;
 }
 

@@ -22,6 +22,9 @@ struct Focus {
 FoamMesh rectangle(const Vec3& origin, const Vec3& u, const Vec3& v, double edge_length, const Focus& focus);
 /// Bulges along `axis`, its rim is a circle around `center`.
 FoamMesh hemisphere(const Vec3& center, const Vec3& axis, double radius, double edge_length);
+/// A ball that a ring holds at its equator: region 1, of the volume of the exact ball, between the half that bulges along
+/// `axis`, with region 0 before it, and the other, with the open region 2 behind it.
+FoamMesh ball_in_ring(const Vec3& center, const Vec3& axis, double radius, double edge_length);
 /// Between two rings of one radius, `separation` [m] apart along `axis`; region 1 is inside.
 FoamMesh cylinder(const Vec3& center, const Vec3& axis, double radius, double separation, double edge_length);
 

@@ -97,7 +97,7 @@ void VortexParticleSolver::save(sim::StateWriter& out) const {
     out.write_value("step", step_);
     out.write_value("fastest_dilatation", fastest_dilatation_);
     write_column(out, "solids", state_of(bodies_));
-    out.write_value("ruptured", static_cast<std::int64_t>(ruptured_));
+    out.write_value("end", static_cast<std::int64_t>(end_));
     out.write_value("liquid_in", liquid_in_);
     out.write_value("liquid_out", liquid_out_);
     out.write_value("iterations", iterations_);
@@ -135,7 +135,10 @@ void VortexParticleSolver::load(sim::StateReader& in) {
     std::vector<double> solids;
     read_column(in, "solids", kBodyNumbers * bodies_.size(), solids);
     restore(solids, bodies_);
-    ruptured_ = in.read_integer("ruptured") != 0;
+    const std::int64_t end = in.read_integer("end");
+    if (end < 0 || end > static_cast<std::int64_t>(End::kNoFilm))
+        throw InputError(fmt::format("end = {} is no reason to end", end));
+    end_ = static_cast<End>(end);
     liquid_in_ = in.read_double("liquid_in");
     liquid_out_ = in.read_double("liquid_out");
     iterations_ = in.read_integer("iterations");

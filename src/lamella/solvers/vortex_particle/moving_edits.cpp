@@ -1,7 +1,6 @@
 // How triangles follow films that move, and what an edit of them must leave as it was.
 
 #include "lamella/core/error.h"
-#include "lamella/film/bursting.h"
 #include "lamella/mesh/quality.h"
 #include "lamella/mesh/staged_move.h"
 #include "lamella/solvers/vortex_particle/balance.h"
@@ -16,7 +15,6 @@
 
 namespace lamella::vortex_particle {
 
-using mesh::RegionId;
 using mesh::VertexId;
 
 /// The tracker moves the films to where the step has brought them, as far as none of them cross, and keeps their
@@ -147,30 +145,6 @@ void VortexParticleSolver::join_clusters() {
     };
     for (std::size_t p = 0; p < particles_.size(); ++p) particles_.velocity[p] += along(particles_.triangle[p]);
     for (std::size_t t = 0; t < velocity_.size(); ++t) velocity_[t] += along(t);
-}
-
-void VortexParticleSolver::apply_events() {
-    const auto& events = input_.films->events;
-    constexpr double kNow = 1e-12;
-    while (moving_->next_event < events.size() && events[moving_->next_event].time <= time_ * (1.0 + kNow))
-        apply(events[moving_->next_event++]);
-}
-
-void VortexParticleSolver::apply(const film::Event& event) {
-    const mesh::FoamMesh& mesh = moving_->tracker->mesh();
-    const RegionId region =
-        event.region == film::kRandomBubble
-            ? film::random_outer_bubble(mesh, input_.seed, moving_->next_event).value_or(mesh::kOutside)
-            : event.region;
-    const auto skip = [&](std::string why) { events_.push_back({time_, "skipped", {}, std::move(why)}); };
-    if (index(region) >= mesh.regions.size() || mesh.regions[region].kind != mesh::RegionKind::kClosed)
-        return skip(fmt::format("bubble {} is gone already", index(region)));
-    const RegionId into = event.into == film::kLargestNeighbor
-                              ? film::largest_neighbor(mesh, region).value_or(mesh::kOutside)
-                              : event.into;
-    if (!film::share_film(mesh, region, into))
-        return skip(fmt::format("regions {} and {} share no film", index(region), index(into)));
-    edit_films([&] { moving_->tracker->pop(region, into); });
 }
 
 }  // namespace lamella::vortex_particle

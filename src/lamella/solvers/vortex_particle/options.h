@@ -141,7 +141,7 @@ struct Options {
         option("most_per_triangle", most_per_triangle, sim::at_least(0),
                {"more particles than that in a triangle merge; 0: four times particles_per_triangle"});
         option("rupture_thickness", rupture_thickness, sim::at_least(0.0),
-               {"a film that gets as thin as that bursts, which ends the run; 0: never", "length"});
+               {"a film that gets as thin as that bursts, and the run ends where it bounds no bubble or does not move; 0: never", "length"});
         option("transfer", transfer, sim::choices<Reach>({{"hat", Reach::kHat}, {"kernel", Reach::kKernel}}),
                {"between particles and vertices; hat: to the corners of the triangle; kernel: to all vertices within"
                 " kernel_radius, as published, which blurs more and costs more"});

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 namespace lamella::vortex_particle {
 namespace {
@@ -64,6 +65,7 @@ Relaid relaid(const Laid& before,
     const Heirs heirs(events);
     const auto leaves = leaves_of(now);
     Relaid edit{std::vector<std::uint32_t>(before.surface.triangles(), Relaid::kNoTriangle),
+                std::vector<std::uint8_t>(now.surface.triangles(), 0),
                 std::vector<std::uint8_t>(now.surface.vertices(), 1),
                 std::vector<std::uint32_t>(before.surface.triangles(), kNoRegion)};
     std::vector<std::uint8_t> fresh(now.films.position.size(), 0), known(now.surface.triangles(), 0);
@@ -74,7 +76,11 @@ Relaid relaid(const Laid& before,
             edit.region[t] =
                 static_cast<std::uint32_t>(index(heirs.of(static_cast<RegionId>(before.surface.region[t]))));
         const bool stays = face != mesh::kNoFace && same(before, old, now, face, maps);
-        const std::uint32_t leaf = stays ? leaves[index(face)][before.surface.side[t]] : Relaid::kNoTriangle;
+        std::uint32_t leaf = stays ? leaves[index(face)][before.surface.side[t]] : Relaid::kNoTriangle;
+        if (stays && leaf == Relaid::kNoTriangle && before.surface.partner[t] == kNoPartner) {
+            leaf = leaves[index(face)][1U - before.surface.side[t]];
+            if (leaf != Relaid::kNoTriangle) edit.turned[leaf] = 1;
+        }
         if (leaf != Relaid::kNoTriangle) {
             edit.kept[t] = leaf;
             known[leaf] = 1;
@@ -103,6 +109,10 @@ Bins rebin(const Laid& before, const Laid& now, const Relaid& edit, Particles& p
         const std::uint32_t from = particles.triangle[p];
         if (edit.kept[from] != Relaid::kNoTriangle) {
             particles.triangle[p] = edit.kept[from];
+            if (edit.turned[edit.kept[from]] != 0) {
+                std::swap(particles.place[p][1], particles.place[p][2]);
+                particles.circulation[p] = -particles.circulation[p];
+            }
             return;
         }
         const Vec3 x = before.surface.point(from, particles.place[p]), n = before.surface.normal[from];
@@ -117,7 +127,7 @@ Bins rebin(const Laid& before, const Laid& now, const Relaid& edit, Particles& p
             // Its own bubble's leaf goes first, and one that faces as it did.
             constexpr double kOther = 100.0, kTurned = 10.0;  // edges
             const double detour = (s.region[t] == edit.region[from] ? 0.0 : kOther * s.mean_edge) +
-                                  (dot(s.normal[t], n) > 0.0 ? 0.0 : kTurned * s.mean_edge);
+                                  ((dot(s.normal[t], n) > 0.0) != (edit.turned[t] != 0) ? 0.0 : kTurned * s.mean_edge);
             const double distance = norm(s.point(t, at) - x) + detour;
             if (!(distance < best)) continue;
             best = distance;
@@ -126,6 +136,7 @@ Bins rebin(const Laid& before, const Laid& now, const Relaid& edit, Particles& p
         }
         particles.triangle[p] = to;
         particles.place[p] = place;
+        if (edit.turned[to] != 0) particles.circulation[p] = -particles.circulation[p];
         Vec3& u = particles.velocity[p];
         constexpr double kFolded = -0.9;
         if (dot(n, s.normal[to]) > kFolded) u = turned(u, n, s.normal[to]);

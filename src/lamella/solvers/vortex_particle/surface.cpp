@@ -196,6 +196,12 @@ void place(const IdVector<mesh::VertexId, Vec3>& position, Walls walls, Surface&
     find_walls(s, walls);
 }
 
+std::vector<double> whole_thickness(const Surface& s, std::span<const double> leaves) {
+    std::vector<double> whole(leaves.begin(), leaves.end());
+    for (std::size_t v = 0; v < whole.size(); ++v) whole[v] /= s.vertex_share[v];
+    return whole;
+}
+
 Vec3 turned(const Vec3& u, const Vec3& from, const Vec3& to) {
     // Rodrigues' formula about from x to; for a tangent vector u of the first plane, from . u = 0.
     const double cosine = dot(from, to);

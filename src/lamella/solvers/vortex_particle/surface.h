@@ -117,6 +117,9 @@ Surface surface_of(const mesh::FoamMesh& mesh, Walls walls = Walls::kSlip, const
 /// @throws NumericalError  a triangle has lost its area
 void place(const IdVector<mesh::VertexId, Vec3>& position, Walls walls, Surface& s);
 
+/// Of the whole film whose leaves' thickness is given at vertices [m].
+std::vector<double> whole_thickness(const Surface& s, std::span<const double> leaves);
+
 /// Turns the tangent vector `u` of a surface with normal `from` into one of a surface with normal `to` by the smallest
 /// rotation that does so.
 Vec3 turned(const Vec3& u, const Vec3& from, const Vec3& to);

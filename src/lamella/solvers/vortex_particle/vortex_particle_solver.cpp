@@ -27,13 +27,6 @@ const film::Problem& films_of(const sim::SolverInput& input) {
     return *input.films;
 }
 
-/// Of the whole film whose leaves these are.
-std::vector<double> whole_thickness(const Surface& s, std::span<const double> thickness) {
-    std::vector<double> whole(thickness.begin(), thickness.end());
-    for (std::size_t v = 0; v < whole.size(); ++v) whole[v] /= s.vertex_share[v];
-    return whole;
-}
-
 /// 1/eta of triangles, from the mean of their corners.
 std::vector<double> inverse_thickness(const Surface& s, std::span<const double> leaves) {
     const std::vector<double> thickness = whole_thickness(s, leaves);
@@ -128,7 +121,6 @@ sim::StepReport VortexParticleSolver::advance(double time_limit) {
     const double dt = choose_step(left);
     if (moving_) drift(0.5 * dt, {&velocity_});
     const MeshFlow before = particles_to_mesh();
-    look_for_rupture(before);
     MeshFlow flow = before;
     drag(dt, flow);
     drive_circulation(dt, flow);
@@ -146,6 +138,7 @@ sim::StepReport VortexParticleSolver::advance(double time_limit) {
     ++steps_;
     if (moving_) settle_films();
     observed_.reset();
+    look_for_rupture();
     return {.step = dt, .evaluations = 1, .iterations = iterations_};
 }
 
@@ -424,22 +417,6 @@ void VortexParticleSolver::move_particles(double dt, const MeshFlow& flow) {
 std::size_t VortexParticleSolver::most_per_triangle() const {
     const int most = options_.most_per_triangle > 0 ? options_.most_per_triangle : 4 * options_.particles_per_triangle;
     return static_cast<std::size_t>(std::max(2, most));
-}
-
-/// The liquid's own attraction tears a film that is thin enough: where it is thinnest.
-void VortexParticleSolver::look_for_rupture(const MeshFlow& flow) {
-    if (options_.rupture_thickness == 0.0 || ruptured_) return;
-    const std::vector<double> thickness = whole_thickness(surface_, flow.thickness);
-    const auto thinnest = std::min_element(thickness.begin(), thickness.end());
-    if (*thinnest > options_.rupture_thickness) return;
-    ruptured_ = true;
-    const Vec3& x = surface_.position[static_cast<std::size_t>(thinnest - thickness.begin())];
-    events_.push_back({time_, "burst", x, fmt::format("the film is {:.3g} m thick", *thinnest)});
-}
-
-std::optional<std::string> VortexParticleSolver::stop_reason() const {
-    if (!ruptured_) return std::nullopt;
-    return "the film is as thin as rupture_thickness and bursts";
 }
 
 void VortexParticleSolver::exchange_with_stream(double dt) {

@@ -84,7 +84,6 @@ private:
     void move_particles(double dt, const MeshFlow& flow);
     void exchange_with_stream(double dt);
     std::size_t most_per_triangle() const;
-    void look_for_rupture(const MeshFlow& flow);
 
     SurfactantProblem surfactant_problem(double dt, const MeshFlow& flow) const;
     void note_iterations(int iterations, double residual);
@@ -119,6 +118,8 @@ private:
     void join_clusters();
     void apply_events();
     void apply(const film::Event& event);
+    void burst(mesh::RegionId region, mesh::RegionId into);
+    void look_for_rupture();
     double film_area() const;
     void add_film_motion(std::vector<Vec3>& velocity) const;
     void add_film_scalars(std::vector<sim::Scalar>& all) const;
@@ -153,7 +154,8 @@ private:
     std::int64_t steps_ = 0;
     double step_ = 0.0;  ///< the last one
     double fastest_dilatation_ = 0.0;
-    bool ruptured_ = false;
+    /// Why there is nothing more to come.
+    enum class End { kNone, kRupture, kNoFilm } end_ = End::kNone;
     std::vector<sim::Event> events_;             ///< since the last look
     double liquid_in_ = 0.0, liquid_out_ = 0.0;  ///< that the stream has brought and taken [m^3]
     std::int64_t iterations_ = 0;                ///< of the surfactant's equation in the last step
