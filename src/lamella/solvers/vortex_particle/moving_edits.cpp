@@ -3,7 +3,6 @@
 #include "lamella/core/error.h"
 #include "lamella/mesh/quality.h"
 #include "lamella/mesh/staged_move.h"
-#include "lamella/solvers/vortex_particle/balance.h"
 #include "lamella/solvers/vortex_particle/moving.h"
 #include "lamella/solvers/vortex_particle/rebin.h"
 
@@ -77,9 +76,11 @@ void VortexParticleSolver::edit_films(const std::function<void()>& edit) {
     bins_ = rebin(old, now, change, particles_);
     fill_empty_triangles(surface_, particles_, bins_);
     merge_crowds(surface_, most_per_triangle(), particles_, bins_);
-    fit_areas(surface_, transfer_, bins_, change.touched, particles_);
+    const bool bursts = std::any_of(events.begin(), events.end(), [](const mesh::TopologyEvent& event) {
+        return event.kind == mesh::TopologyEvent::Kind::kPop;
+    });
+    if (!bursts) fit_areas(surface_, transfer_, bins_, change.touched, particles_);
     balance_circulation(surface_, bins_, particles_);
-    balance_area(surface_, bins_, particles_);
     follow_velocities(before, change);
     follow_holes(before, maps);
     join_clusters();

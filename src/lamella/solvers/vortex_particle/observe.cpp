@@ -155,7 +155,7 @@ std::vector<sim::Scalar> VortexParticleSolver::scalars() const {
         {"liquid_volume", "m^3", volume, "of all particles: constant"},
         {"surfactant_amount", "mol", 2.0 * sum(particles_.amount), "on both interfaces: constant"},
         {"mesh_volume_error", "-", on_mesh / volume - 1.0,
-         "of the thickness on the mesh against the particles' liquid"},
+         "of the thickness on the mesh against the particles' liquid; below 0 after a burst: what is in borders"},
         {"max_velocity", "m/s", fastest, "along the film"},
         {"max_mach", "-", fastest / film::elastic_wave_speed(material), "that over the speed of elastic waves"},
         {"time_step", "s", step_, "the last one"},

@@ -123,6 +123,7 @@ struct Options {
     double largest_step = 0.01;
     double courant = 1.0;
     double area_relaxation = 0.0;
+    double border_release = 30.0;
     Junction junction = Junction::kLeaves;
     double leaf_exchange = 10.0;
     double velocity_blend = 2.0;
@@ -162,6 +163,9 @@ struct Options {
         option("courant", courant, sim::more_than(0.0), {"edges that the fastest particle moves in a step, at most"});
         option("area_relaxation", area_relaxation, sim::at_least(0.0),
                {"rate at which particles' areas follow the room that they have; measured: 0 is best", "1/time"});
+        option("border_release", border_release, sim::at_least(0.0),
+               {"films that move: rate at which the liquid that a burst film has left in its borders goes into the films",
+                "1/time"});
         option(
             "junction", junction,
             sim::choices<Junction>({{"leaves", Junction::kLeaves}, {"sheets", Junction::kSheets}}),

@@ -165,4 +165,18 @@ void fit_areas(const Surface& s,
     }
 }
 
+void balance_circulation(const Surface& s, const Bins& bins, Particles& particles) {
+    std::vector<double> surplus(s.components, 0.0), area(s.components, 0.0);
+    const auto component = [&](std::size_t t) { return s.component[s.corner[t][0]]; };
+    for (std::size_t t = 0; t < s.triangles(); ++t)
+        for (std::size_t p = bins[t]; p < bins[t + 1]; ++p) {
+            surplus[component(t)] += particles.circulation[p];
+            area[component(t)] += particles.area[p];
+        }
+    for (const BoundaryLoop& loop : s.loops) surplus[loop.component] = 0.0;
+    for (std::size_t t = 0; t < s.triangles(); ++t)
+        for (std::size_t p = bins[t]; p < bins[t + 1]; ++p)
+            particles.circulation[p] -= surplus[component(t)] / area[component(t)] * particles.area[p];
+}
+
 }  // namespace lamella::vortex_particle

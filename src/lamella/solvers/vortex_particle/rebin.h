@@ -47,4 +47,8 @@ void fit_areas(const Surface& s,
                const std::vector<std::uint8_t>& touched,
                Particles& particles);
 
+/// On each component without walls circulation has to sum to zero: what particles of other films have brought is spread
+/// evenly over its area, with the opposite sign.
+void balance_circulation(const Surface& s, const Bins& bins, Particles& particles);
+
 }  // namespace lamella::vortex_particle

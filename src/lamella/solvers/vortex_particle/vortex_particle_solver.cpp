@@ -5,7 +5,6 @@
 #include "lamella/film/bursting.h"
 #include "lamella/film/surfactant.h"
 #include "lamella/linalg/conjugate_gradient.h"
-#include "lamella/solvers/vortex_particle/balance.h"
 #include "lamella/solvers/vortex_particle/exchange.h"
 #include "lamella/solvers/vortex_particle/moving.h"
 #include "lamella/solvers/vortex_particle/solids.h"
@@ -362,6 +361,22 @@ std::vector<double> VortexParticleSolver::particle_circulation(const MeshFlow& f
     return circulation;
 }
 
+/// By how much the logarithm of particles' areas grows at each vertex so that they fit the room that there is; empty:
+/// nowhere. What a film that burst has left lies on its borders with the area that it had, far more than there is, and
+/// goes into the films as that shrinks; differences that the flow makes by itself are smaller.
+std::vector<double> VortexParticleSolver::area_growth(double dt, const MeshFlow& flow) const {
+    constexpr double kUsual = 0.2;
+    const double relaxed = -std::expm1(-options_.area_relaxation * dt);
+    const double released = moving_ ? -std::expm1(-options_.border_release * dt) : 0.0;
+    if (relaxed == 0.0 && released == 0.0) return {};
+    std::vector<double> growth(surface_.vertices());
+    for (std::size_t v = 0; v < growth.size(); ++v) {
+        const double room = std::log(surface_.vertex_area[v] / flow.area[v]);
+        growth[v] = relaxed * room + released * (room - std::clamp(room, -kUsual, kUsual));
+    }
+    return transfer_.gather(surface_, particles_, growth);
+}
+
 /// Particles take over changes, not values: what the mesh cannot see of them stays [Tao24, eq. 21]. Velocities follow
 /// slowly what it does see. Areas need not: a thickness that drifted is carried by the liquid, which is conserved (a
 /// blend as in the method sheet's 12.10, tried, makes thickness of thick and thin neighbors alike and liquid out of
@@ -370,18 +385,12 @@ void VortexParticleSolver::mesh_to_particles(double dt,
                                              const MeshFlow& before,
                                              const MeshFlow& after,
                                              const std::vector<double>& dilatation) {
-    const std::size_t vertices = surface_.vertices();
-    std::vector<double> spin(vertices), room(vertices);
-    for (std::size_t v = 0; v < vertices; ++v) {
+    std::vector<double> spin(surface_.vertices());
+    for (std::size_t v = 0; v < spin.size(); ++v)
         spin[v] = (after.circulation[v] - before.circulation[v]) / before.area[v];
-        room[v] = std::log(surface_.vertex_area[v] / before.area[v]);
-    }
     const std::vector<Vec3> smooth = vertex_velocity(surface_, after.velocity);
-    const double relaxed = -std::expm1(-options_.area_relaxation * dt);
     const double followed = -std::expm1(-options_.velocity_blend * dt);
-    const std::vector<double> turn = particle_circulation(before, spin);
-    const std::vector<double> room_at =
-        relaxed > 0.0 ? transfer_.gather(surface_, particles_, room) : std::vector<double>(particles_.size(), 0.0);
+    const std::vector<double> turn = particle_circulation(before, spin), growth = area_growth(dt, before);
     parallel_for(particles_.size(), [&](std::size_t p) {
         const std::size_t t = particles_.triangle[p];
         const auto& [a, b, c] = surface_.corner[t];
@@ -393,7 +402,7 @@ void VortexParticleSolver::mesh_to_particles(double dt,
         u += followed * (mesh - u);
         u -= dot(u, surface_.normal[t]) * surface_.normal[t];
         const double theta = at[0] * dilatation[a] + at[1] * dilatation[b] + at[2] * dilatation[c];
-        particles_.area[p] *= std::exp(theta * dt + relaxed * room_at[p]);
+        particles_.area[p] *= std::exp(theta * dt + (growth.empty() ? 0.0 : growth[p]));
     });
 }
 
@@ -410,7 +419,6 @@ void VortexParticleSolver::move_particles(double dt, const MeshFlow& flow) {
     fill_empty_triangles(surface_, particles_, bins_);
     merge_crowds(surface_, most_per_triangle(), particles_, bins_);
     exchange_between_leaves(surface_, bins_, options_.leaf_exchange * dt, particles_);
-    if (moving_) balance_area(surface_, bins_, particles_);
 }
 
 /// Never fewer than splitting makes.

@@ -77,6 +77,7 @@ private:
     Cover cover(double dt) const;
     void recover_velocity(MeshFlow& flow) const;
     std::vector<double> particle_circulation(const MeshFlow& flow, std::vector<double> spin) const;
+    std::vector<double> area_growth(double dt, const MeshFlow& flow) const;
     void mesh_to_particles(double dt,
                            const MeshFlow& before,
                            const MeshFlow& after,
