@@ -7,6 +7,7 @@
 
 #include "../../validation/vortex_particle/films.h"
 #include "../sim/state_memory.h"
+#include <cmath>
 #include <numeric>
 
 namespace lamella::vortex_particle {
@@ -75,6 +76,26 @@ largest_step = 0.02
 velocity = [1, 0, 0]
 )";
 
+/// Films that meet in triple lines, over which liquid runs with its swirls.
+constexpr const char* kSheets = R"(
+[material]
+gravity = [3.0, 0.0, -9.81]
+surfactant = 8e-7
+[[film]]
+shape = "frame"
+frame = "cube"
+edge = 1.0
+[[vortex]]
+center = [0.3, 0.0, 0.3]
+radius = 0.1
+circulation = 0.2
+[resolution]
+edge_length = 0.1
+[vortex_particle]
+junction = "sheets"
+largest_step = 0.02
+)";
+
 void advance(VortexParticleSolver& solver, double until, std::int64_t stop_after = 1'000'000) {
     for (std::int64_t k = 0; k < stop_after && solver.time() < until; ++k) solver.advance(until);
 }
@@ -95,7 +116,7 @@ void expect_equal(const VortexParticleSolver& a, const VortexParticleSolver& b) 
 }
 
 TEST(VortexParticleSolver, GivesTheSameBitsOnOneAndTwoThreads) {
-    for (const char* scene : {kBusy, kStreaming})
+    for (const char* scene : {kBusy, kStreaming, kSheets})
         for (const char* transfer : {"hat", "kernel"}) {
             std::vector<std::unique_ptr<VortexParticleSolver>> runs;
             for (const int threads : {1, 2}) {
@@ -109,7 +130,7 @@ TEST(VortexParticleSolver, GivesTheSameBitsOnOneAndTwoThreads) {
 }
 
 TEST(VortexParticleSolver, GoesOnFromACheckpointWithTheSameBits) {
-    for (const char* scene : {kBusy, kStreaming}) {
+    for (const char* scene : {kBusy, kStreaming, kSheets}) {
         auto whole = solver_of(scene);
         whole->start({});
         advance(*whole, 0.3);
@@ -345,8 +366,36 @@ surfactant = 0.2
     EXPECT_GT(size, 0.1);
 }
 
+TEST(VortexParticleSolver, CarriesLiquidAndSwirlsOverTripleLines) {
+    auto solver = solver_of(kSheets);
+    solver->start({});
+    const auto film_of = [&](std::size_t p) {
+        const Surface& s = solver->surface();
+        return s.component[s.corner[solver->particles().triangle[p]][0]];
+    };
+    const auto liquid = [&] {
+        std::vector<double> sum(solver->surface().components, 0.0);
+        for (std::size_t p = 0; p < solver->particles().size(); ++p) sum[film_of(p)] += solver->particles().volume[p];
+        return sum;
+    };
+    ASSERT_EQ(solver->surface().components, 12U);
+    const std::vector<double> before = liquid();
+    advance(*solver, 0.5);
+    const std::vector<double> after = liquid();
+    double moved = 0.0, total = 0.0, all = 0.0;
+    for (std::size_t c = 0; c < before.size(); ++c) {
+        moved += std::abs(after[c] - before[c]);
+        total += before[c];
+        all += after[c];
+    }
+    EXPECT_NEAR(all / total, 1.0, 1e-13);
+    EXPECT_GT(moved, 0.02 * total);
+    const auto& circulation = solver->particles().circulation;
+    for (std::size_t p = 0; p < circulation.size(); ++p) ASSERT_TRUE(std::isfinite(circulation[p]));
+}
+
 TEST(VortexParticleSolver, RefusesWhatItCannotDo) {
-    EXPECT_THROW(solver_of("[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n[vortex_particle]\njunction=\"sheets\"\n"),
+    EXPECT_THROW(solver_of("[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n[vortex_particle]\nmoving=true\njunction=\"sheets\"\n"),
                  InputError);
     EXPECT_THROW(solver_of("[[film]]\nshape=\"frame\"\n"), InputError);
     EXPECT_THROW(

@@ -16,13 +16,17 @@ linalg::Refactored refactored(Films films) {
     return films == Films::kMoving ? linalg::Refactored::kOften : linalg::Refactored::kSeldom;
 }
 
-/// Numbers the unknowns: one per vertex, but none where `fixed`.
+/// Numbers the unknowns: one per vertex, but none where `fixed`, and that of its `joint` where there are some.
 template <class Fixed>
-std::vector<int> numbered(const Surface& s, Fixed&& fixed) {
+std::vector<int> numbered(const Surface& s, Fixed&& fixed, std::span<const std::uint32_t> joint = {}) {
     std::vector<int> unknown(s.vertices(), -1);
     int next = 0;
-    for (std::size_t v = 0; v < s.vertices(); ++v)
-        if (!fixed(v)) unknown[v] = next++;
+    for (std::size_t v = 0; v < s.vertices(); ++v) {
+        if (!joint.empty() && joint[v] != v)
+            unknown[v] = unknown[joint[v]];
+        else if (!fixed(v))
+            unknown[v] = next++;
+    }
     return unknown;
 }
 
@@ -33,12 +37,14 @@ std::vector<std::size_t> first_vertices(const Surface& s) {
     return first;
 }
 
-/// None where film runs out, as into a wide place.
+/// None where film runs out, as into a wide place; one for all vertices at one place.
 std::vector<int> potential_unknowns(const Surface& s) {
+    const std::vector<std::uint32_t> connected = connected_components(s);
+    const auto films = [&](std::size_t v) { return connected[s.component[v]]; };
     std::vector<std::size_t> pinned = first_vertices(s);
     for (std::size_t v = 0; v < s.vertices(); ++v)
-        if (s.lets_out(v)) pinned[s.component[v]] = s.vertices();
-    return numbered(s, [&](std::size_t v) { return s.lets_out(v) || v == pinned[s.component[v]]; });
+        if (s.lets_out(v)) pinned[films(v)] = s.vertices();
+    return numbered(s, [&](std::size_t v) { return s.lets_out(v) || v == pinned[films(v)]; }, s.joint);
 }
 
 /// None on outer walls, one for all vertices of the wall around a hole; free where film runs out between walls, which
@@ -77,38 +83,22 @@ void FlowSolver::Poisson::factorize(const Surface& s) {
     if (!factors.factorize(matrix.matrix())) throw NumericalError("the film's Poisson equation is singular");
 }
 
-/// Adds up what belongs to one unknown.
-std::vector<double> FlowSolver::Poisson::sums(std::span<const double> at_vertices) const {
-    std::vector<double> x(matrix.size(), 0.0);
-    for (std::size_t v = 0; v < at_vertices.size(); ++v)
-        if (matrix.unknown(v) >= 0) x[static_cast<std::size_t>(matrix.unknown(v))] += at_vertices[v];
-    return x;
-}
-
-/// Gives each vertex its unknown's value.
-std::vector<double> FlowSolver::Poisson::spread(const std::vector<double>& x) const {
-    std::vector<double> at_vertices(matrix.vertices(), 0.0);
-    for (std::size_t v = 0; v < at_vertices.size(); ++v)
-        if (matrix.unknown(v) >= 0) at_vertices[v] = x[static_cast<std::size_t>(matrix.unknown(v))];
-    return at_vertices;
-}
-
 std::vector<double> FlowSolver::Poisson::solve(const Surface& s,
                                                const std::vector<double>& right,
                                                bool lagging,
                                                int& iterations) const {
-    std::vector<double> x = sums(right);
-    if (x.empty()) return spread(x);
+    std::vector<double> x = matrix.sums(right);
+    if (x.empty()) return matrix.spread(x);
     if (!lagging) {
         factors.solve(x);
-        return spread(x);
+        return matrix.spread(x);
     }
     const std::vector<double> b = x;
     factors.precondition(x);
     const auto apply = [&](const std::vector<double>& p, std::vector<double>& y) {
         std::vector<double> image(s.vertices(), 0.0);
-        add_stiffness(s, 1.0, {}, spread(p), image);
-        y = sums(image);
+        add_stiffness(s, 1.0, {}, matrix.spread(p), image);
+        y = matrix.sums(image);
     };
     const auto precondition = [&](const std::vector<double>& p, std::vector<double>& y) {
         y = p;
@@ -117,7 +107,7 @@ std::vector<double> FlowSolver::Poisson::solve(const Surface& s,
     const auto done =
         linalg::preconditioned_conjugate_gradient(apply, precondition, b, x, kLaggingTolerance, kMostIterations);
     iterations = std::max(iterations, done.iterations);
-    return spread(x);
+    return matrix.spread(x);
 }
 
 FlowSolver::FlowSolver(const Surface& s, Films films)
@@ -163,7 +153,7 @@ std::vector<int> all_vertices(const Surface& s) {
 }  // namespace
 
 ShiftedStiffness::ShiftedStiffness(const Surface& s, Films films)
-    : matrix_(s, all_vertices(s)), factors_(refactored(films)) {
+    : matrix_(s, numbered(s, [](std::size_t) { return false; }, s.joint)), factors_(refactored(films)) {
     factors_.analyze(matrix_.matrix());
 }
 

@@ -23,6 +23,7 @@ enum class Films { kStill, kMoving };
 ///     K Phi = -D       walls let nothing through
 ///
 /// Where film runs out at an open end, dPsi/dn = 0 and Phi = 0: it runs straight out, as much as comes.
+/// Where films flow on into each other over triple lines, Phi is the same on all of them, and lines are walls to Psi.
 /// Where Psi or Phi is free up to a constant, one value of each component is 0.
 class FlowSolver {
 public:
@@ -53,17 +54,14 @@ private:
                                   const std::vector<double>& right,
                                   bool lagging,
                                   int& iterations) const;
-
-    private:
-        std::vector<double> sums(std::span<const double> at_vertices) const;
-        std::vector<double> spread(const std::vector<double>& x) const;
     };
     Poisson stream_, potential_;
     bool lagging_;
     mutable int iterations_ = 0;
 };
 
-/// (diag(mass) + scale K_w) x = b with a factorization that is kept while mass, scale and weights stay the same.
+/// (diag(mass) + scale K_w) x = b with a factorization that is kept while mass, scale and weights stay the same. Vertices
+/// at one place are one unknown.
 class ShiftedStiffness {
 public:
     explicit ShiftedStiffness(const Surface& s, Films films = Films::kStill);
@@ -72,6 +70,8 @@ public:
     void factorize(const Surface& s, double scale, std::span<const double> weight, std::span<const double> mass);
     void solve(std::span<double> x) const { factors_.solve(x); }
     void precondition(std::span<double> x) const { factors_.precondition(x); }
+    /// From vertices to its unknowns and back.
+    const VertexMatrix& unknowns() const { return matrix_; }
 
 private:
     VertexMatrix matrix_;

@@ -128,7 +128,7 @@ void lay_leaves(const mesh::FoamMesh& mesh, Surface& s) {
             if (s.region[uses[0].triangle] == kNoRegion) {
                 if (uses.size() > 2)
                     throw InputError(
-                        "vortex_particle: films that bound no bubble and meet in a triple line are not built yet");
+                        "vortex_particle: films that bound no bubble and meet in a triple line need junction = \"sheets\"");
                 if (uses[0].forward == uses[1].forward)
                     throw InputError(
                         "vortex_particle: neighboring triangles of the film face opposite ways; turn its faces to "

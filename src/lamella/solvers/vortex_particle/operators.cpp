@@ -174,6 +174,20 @@ void VertexMatrix::assemble(
         if (unknown_[v] >= 0) matrix_.diagonal(static_cast<std::size_t>(unknown_[v])) += mass[v];
 }
 
+std::vector<double> VertexMatrix::sums(std::span<const double> at_vertices) const {
+    std::vector<double> x(size(), 0.0);
+    for (std::size_t v = 0; v < at_vertices.size(); ++v)
+        if (unknown_[v] >= 0) x[static_cast<std::size_t>(unknown_[v])] += at_vertices[v];
+    return x;
+}
+
+std::vector<double> VertexMatrix::spread(std::span<const double> x) const {
+    std::vector<double> at_vertices(vertices(), 0.0);
+    for (std::size_t v = 0; v < at_vertices.size(); ++v)
+        if (unknown_[v] >= 0) at_vertices[v] = x[static_cast<std::size_t>(unknown_[v])];
+    return at_vertices;
+}
+
 void add_ties(const Surface& s, double tie, std::span<const double> x, std::span<double> y) {
     parallel_for(s.vertices(), [&](std::size_t v) {
         double sum = 0.0;

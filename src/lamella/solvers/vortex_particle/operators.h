@@ -79,6 +79,11 @@ public:
     std::size_t vertices() const { return unknown_.size(); }
     int unknown(std::size_t v) const { return unknown_[v]; }
 
+    /// Adds up what belongs to one unknown.
+    std::vector<double> sums(std::span<const double> at_vertices) const;
+    /// Gives each vertex its unknown's value, or 0.
+    std::vector<double> spread(std::span<const double> x) const;
+
 private:
     std::vector<int> unknown_;
     linalg::SymmetricMatrix matrix_;

@@ -15,7 +15,6 @@ enum class Viscosity {
     kSurface,  ///< that of a curved fluid sheet: a rigid rotation of a bubble is not damped
     kLaplace,  ///< diffusion of the vorticity, as published
 };
-enum class Junction { kLeaves, kSheets };
 enum class ThicknessProfile { kUniform, kLinear, kStep, kCosine };
 enum class SurfactantProfile {
     kUniform,
@@ -169,8 +168,8 @@ struct Options {
         option(
             "junction", junction,
             sim::choices<Junction>({{"leaves", Junction::kLeaves}, {"sheets", Junction::kSheets}}),
-            {"films that bound two bubbles; leaves: each bubble has half of them, which flows on its own; sheets: one"
-             " flow per film (not built yet)"});
+            {"films that meet in triple lines; leaves: each bubble has half of those around it, which flows on its own;"
+             " sheets: one flow per film, which goes on over the lines (films that do not move)"});
         option("leaf_exchange", leaf_exchange, sim::at_least(0.0),
                {"rate at which a leaf gives liquid and surfactant to the other one of its film where that has none; the"
                 " paper: 0.1 per step",

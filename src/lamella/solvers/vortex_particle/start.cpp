@@ -76,12 +76,14 @@ std::vector<double> pulling_surfactant(const Surface& s,
         acceleration[t] *= thickness / strength;
     }
     std::vector<double> surfactant = flow.potential(s, divergence(s, acceleration));
+    const std::vector<std::uint32_t> connected = connected_components(s);
+    const auto of = [&](std::size_t v) { return connected[s.component[v]]; };
     std::vector<double> total(s.components, 0.0), part(s.components, 0.0);
     for (std::size_t v = 0; v < s.vertices(); ++v) {
-        total[s.component[v]] += surfactant[v] * s.vertex_area[v];
-        part[s.component[v]] += s.vertex_area[v];
+        total[of(v)] += surfactant[v] * s.vertex_area[v];
+        part[of(v)] += s.vertex_area[v];
     }
-    for (std::size_t v = 0; v < s.vertices(); ++v) surfactant[v] -= total[s.component[v]] / part[s.component[v]];
+    for (std::size_t v = 0; v < s.vertices(); ++v) surfactant[v] -= total[of(v)] / part[of(v)];
     return surfactant;
 }
 

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.h"
 #include "lamella/solvers/vortex_particle/leaves.h"
+#include "lamella/solvers/vortex_particle/sheets.h"
 
 #include <fmt/format.h>
 
@@ -155,7 +156,8 @@ void find_walls(Surface& s, Walls walls) {
     s.wall_normal.assign(s.vertices(), {});
     for (std::size_t t = 0; t < s.triangles(); ++t)
         for (std::size_t k = 0; k < 3; ++k) {
-            if (s.neighbor[t][k] != kNoNeighbor || s.opening_of(t, k) != Opening::kNone) continue;
+            if (s.neighbor[t][k] != kNoNeighbor || s.opening_of(t, k) != Opening::kNone || !s.meeting(t, k).empty())
+                continue;
             const Vec3 out = outward(s, t, k);
             for (const std::uint32_t v : {s.corner[t][(k + 1) % 3], s.corner[t][(k + 2) % 3]}) {
                 const bool first = s.place[v] == Place::kInside;
@@ -174,10 +176,10 @@ void find_walls(Surface& s, Walls walls) {
 
 }  // namespace
 
-Surface surface_of(const mesh::FoamMesh& mesh, Walls walls, const Vec3& stream) {
+Surface surface_of(const mesh::FoamMesh& mesh, Walls walls, const Vec3& stream, Junction junction) {
     if (mesh.periodic()) throw InputError("vortex_particle: films in a periodic box are for solver equilibrium");
     Surface s;
-    lay_leaves(mesh, s);
+    junction == Junction::kSheets ? lay_sheets(mesh, s) : lay_leaves(mesh, s);
     find_rings(s);
     find_components_and_loops(s);
     const std::size_t flat = measure(s);
@@ -194,6 +196,22 @@ void place(const IdVector<mesh::VertexId, Vec3>& position, Walls walls, Surface&
     if (flat != s.triangles())
         throw NumericalError(fmt::format("vortex_particle: triangle {} of the film has lost its area", flat));
     find_walls(s, walls);
+}
+
+void add_up_joints(const Surface& s, std::span<double> value) {
+    if (!s.jointed()) return;
+    for (std::size_t v = 0; v < value.size(); ++v)
+        if (s.joint[v] != v) value[s.joint[v]] += value[v];
+    for (std::size_t v = 0; v < value.size(); ++v) value[v] = value[s.joint[v]];
+}
+
+std::vector<std::uint32_t> connected_components(const Surface& s) {
+    Classes parts(s.components);
+    if (s.jointed())
+        for (std::size_t v = 0; v < s.vertices(); ++v) parts.join(s.component[v], s.component[s.joint[v]]);
+    std::vector<std::uint32_t> first(s.components);
+    for (std::uint32_t c = 0; c < s.components; ++c) first[c] = parts.root(c);
+    return first;
 }
 
 std::vector<double> whole_thickness(const Surface& s, std::span<const double> leaves) {

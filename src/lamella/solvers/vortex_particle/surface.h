@@ -66,6 +66,11 @@ struct Surface {
     std::vector<std::uint32_t> region;   ///< the bubble around which it closes, or kNoRegion
     std::vector<std::uint32_t> partner;  ///< the other leaf of the same film, or kNoPartner
     std::vector<double> share;           ///< of the film: 1/2 where it has two leaves, else 1
+    // Empty where films do not flow on into each other over triple lines.
+    std::vector<std::uint32_t> joint;               ///< of each vertex: the first of those at the same place
+    std::vector<std::array<std::int32_t, 3>> seam;  ///< of the edge opposite to corner k: index into `seams`, or -1
+    std::vector<std::vector<Incidence>> seams;      ///< the edges, each opposite to corner k, that lie on one another
+
     // Empty in a film that nothing streams through.
     std::vector<std::array<Opening, 3>> opening;  ///< of the edge opposite to corner k
     std::vector<Opening> vertex_opening;          ///< of each vertex; where inflow meets outflow, outflow
@@ -95,6 +100,12 @@ struct Surface {
     }
     /// Of an equilateral triangle of its area [m].
     double edge_length(std::size_t t) const { return std::sqrt(2.3094010767585034 * area[t]); }  // 4 / sqrt(3)
+    bool jointed() const { return !joint.empty(); }
+    /// The triangles across the edge opposite to corner k where films meet; none elsewhere, and itself is among them.
+    std::span<const Incidence> meeting(std::size_t t, std::size_t k) const {
+        if (!jointed() || seam[t][k] < 0) return {};
+        return seams[static_cast<std::size_t>(seam[t][k])];
+    }
     bool open() const { return !opening.empty(); }
     Opening opening_of(std::size_t t, std::size_t k) const { return open() ? opening[t][k] : Opening::kNone; }
     bool lets_out(std::size_t v) const { return open() && vertex_opening[v] == Opening::kOutflow; }
@@ -106,16 +117,29 @@ struct Surface {
 /// What walls do to the flow along them.
 enum class Walls { kSlip, kNoSlip };
 
-/// In leaves: see leaves.h.
+/// What films that meet in triple lines are to the flow.
+enum class Junction {
+    kLeaves,  ///< see leaves.h
+    kSheets,  ///< see sheets.h
+};
+
 /// @param stream  the velocity with which film runs through it [m/s], in where it points into the film and out where it
 ///                points out; 0: it is closed
-/// @throws InputError  films without bubbles that meet in a triple line or cannot be oriented, or that fill space; a
-///                     stream that does not run along a flat film and its walls
-Surface surface_of(const mesh::FoamMesh& mesh, Walls walls = Walls::kSlip, const Vec3& stream = {});
+/// @throws InputError  films without bubbles that meet in a triple line, as leaves; films that cannot be oriented or that
+///                     fill space; a stream that does not run along a flat film and its walls
+Surface surface_of(const mesh::FoamMesh& mesh,
+                   Walls walls = Walls::kSlip,
+                   const Vec3& stream = {},
+                   Junction junction = Junction::kLeaves);
 
 /// Where the surface lies when the vertices of the films' mesh have moved.
 /// @throws NumericalError  a triangle has lost its area
 void place(const IdVector<mesh::VertexId, Vec3>& position, Walls walls, Surface& s);
+
+/// Gives all vertices at one place the sum of what they have.
+void add_up_joints(const Surface& s, std::span<double> value);
+/// Of each component, the first of those with which its films hang together.
+std::vector<std::uint32_t> connected_components(const Surface& s);
 
 /// Of the whole film whose leaves' thickness is given at vertices [m].
 std::vector<double> whole_thickness(const Surface& s, std::span<const double> leaves);

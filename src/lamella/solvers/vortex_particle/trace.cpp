@@ -1,6 +1,7 @@
 #include "lamella/solvers/vortex_particle/trace.h"
 
 #include "lamella/core/parallel.h"
+#include "lamella/core/random.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,9 +73,63 @@ void cross_edge(const Surface& s, Spot& spot, std::size_t k, Vec3& displacement)
     spot = {next, place};
 }
 
-}  // namespace
+/// How a particle goes on over a line where films meet.
+struct Passage {
+    std::span<const Vec3> velocity;  ///< of vertices [m/s]
+    double chance;                   ///< in [0, 1)
+    double side = 1.0;               ///< -1: the film that it is on now is seen from the other side of its path
+};
 
-bool walk(const Surface& s, Spot& spot, Vec3 displacement) {
+/// The direction into triangle t at the edge opposite to corner k, along it.
+Vec3 inward(const Surface& s, std::size_t t, std::size_t k) { return s.hat_slope[t][k] / norm(s.hat_slope[t][k]); }
+
+/// A spot on the edge opposite to corner k, seen from a triangle of another film there.
+Spot seen_from(const Surface& s, const Spot& spot, std::size_t k, const Incidence& other) {
+    Spot seen{other.triangle, {}};
+    for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t i = 0; i < 3; ++i)
+            if (i != k && j != other.k &&
+                s.site[s.corner[other.triangle][j]] == s.site[s.corner[spot.triangle][i]])
+                seen.place[j] = spot.place[i];
+    return seen;
+}
+
+/// Into one of the other films, with a probability as the flow into it is. @returns whether there is any
+bool cross_seam(const Surface& s, Spot& spot, std::size_t k, Vec3& displacement, Passage& passage) {
+    const std::uint32_t t = spot.triangle;
+    const std::span<const Incidence> meeting = s.meeting(t, k);
+    const auto inflow = [&](const Incidence& other) {
+        if (other.triangle == t) return 0.0;
+        const Spot seen = seen_from(s, spot, k, other);
+        double flow = 0.0;
+        for (std::size_t j = 0; j < 3; ++j)
+            flow += seen.place[j] * dot(passage.velocity[s.corner[other.triangle][j]], inward(s, other.triangle, other.k));
+        return std::max(0.0, flow);
+    };
+    double total = 0.0;
+    for (const Incidence& other : meeting) total += inflow(other);
+    if (!(total > 0.0)) return false;
+    double left = passage.chance * total;
+    const Incidence* next = nullptr;
+    for (const Incidence& other : meeting) {
+        const double flow = inflow(other);
+        if (flow > 0.0) next = &other;
+        if (flow > 0.0 && left < flow) break;
+        left -= flow;
+    }
+    passage.chance = std::fmod(passage.chance * 16.0, 1.0);  // for another line in the same step
+    const Vec3 edge = s.edge(t, k), along = edge / norm(edge), out = -inward(s, t, k);
+    const Vec3 in = inward(s, next->triangle, next->k);
+    displacement = dot(displacement, along) * along + dot(displacement, out) * in;
+    // The side from which this film is seen lies in a wedge between it and the other film, or does not.
+    const double handed = dot(cross(along, out), s.normal[t]) * dot(cross(along, in), s.normal[next->triangle]);
+    if (handed < 0.0) passage.side = -passage.side;
+    spot = seen_from(s, spot, k, *next);
+    return true;
+}
+
+/// As `walk`; with a passage over lines where films meet too.
+bool go(const Surface& s, Spot& spot, Vec3 displacement, Passage* passage) {
     constexpr int kMostEdges = 60;
     for (int edge = 0; edge < kMostEdges; ++edge) {
         const std::size_t t = spot.triangle;
@@ -93,6 +148,8 @@ bool walk(const Surface& s, Spot& spot, Vec3 displacement) {
         displacement *= 1.0 - share;
         if (s.neighbor[t][out] == kNoNeighbor) {
             if (s.opening_of(t, out) == Opening::kOutflow) return false;
+            if (passage != nullptr && !s.meeting(t, out).empty() && cross_seam(s, spot, out, displacement, *passage))
+                continue;
             const Vec3 wall = s.edge(t, out);
             displacement = (dot(displacement, wall) / squared_norm(wall)) * wall;
             // At the end of this stretch of wall the next one decides, from the triangle that it belongs to.
@@ -112,7 +169,12 @@ bool walk(const Surface& s, Spot& spot, Vec3 displacement) {
     return true;
 }
 
-void trace(const Surface& s, std::span<const Vec3> velocity, double dt, Particles& particles) {
+}  // namespace
+
+bool walk(const Surface& s, Spot& spot, Vec3 displacement) { return go(s, spot, displacement, nullptr); }
+
+void trace(
+    const Surface& s, std::span<const Vec3> velocity, double dt, Particles& particles, const Draw& draw) {
     const std::vector<Rates> rates = corner_rates(s, velocity);
     parallel_for(particles.size(), [&](std::size_t p) {
         const Spot start{particles.triangle[p], particles.place[p]};
@@ -135,12 +197,16 @@ void trace(const Surface& s, std::span<const Vec3> velocity, double dt, Particle
         Spot spot = start;
         const Place3 near = ahead(start.place, dt, mean);
         bool stays = true;
-        if (inside(near))
+        Passage passage{velocity, 0.0};
+        if (inside(near)) {
             spot.place = near;
-        else
-            stays = walk(s, spot, dt * vector_of(s, t, mean));
+        } else {
+            if (s.jointed()) passage.chance = uniform01(random_bits(draw.seed, RandomStream::kFilmParticle, draw.step, p));
+            stays = go(s, spot, dt * vector_of(s, t, mean), &passage);
+        }
         normalize(spot.place);
-        particles.velocity[p] = turned(particles.velocity[p], s.normal[t], s.normal[spot.triangle]);
+        particles.velocity[p] = turned(particles.velocity[p], s.normal[t], passage.side * s.normal[spot.triangle]);
+        particles.circulation[p] *= passage.side;
         particles.triangle[p] = stays ? spot.triangle : kGone;
         particles.place[p] = spot.place;
     });

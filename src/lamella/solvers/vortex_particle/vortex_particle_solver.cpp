@@ -44,7 +44,7 @@ VortexParticleSolver::VortexParticleSolver(const Options& options, const sim::So
       input_(input),
       surfactant_strength_(2.0 * film::thermal_energy(films_of(input).material) / input.films->material.liquid_density),
       viscosity_(film::film_viscosity(input.films->material)),
-      surface_(surface_of(input.films->mesh, options.walls, options.stream.velocity)),
+      surface_(surface_of(input.films->mesh, options.walls, options.stream.velocity, options.junction)),
       stream_(surface_, *input.films, options, input.seed),
       transfer_(surface_, options.transfer, options.kernel_radius * surface_.longest_edge),
       flow_solver_(surface_),
@@ -56,8 +56,9 @@ VortexParticleSolver::VortexParticleSolver(const Options& options, const sim::So
         throw InputError("vortex_particle.walls = \"no_slip\" needs material.kinematic_viscosity or surface_viscosity");
     if (!input_.films->events.empty() && !options_.moving)
         throw InputError("vortex_particle: [[event]] tables need films that move: vortex_particle.moving = true");
-    if (options_.junction == Junction::kSheets)
-        throw InputError("vortex_particle.junction = \"sheets\" is not built yet; use \"leaves\"");
+    if (options_.junction == Junction::kSheets && (options_.moving || norm(options_.stream.velocity) > 0.0))
+        throw InputError(
+            "vortex_particle.junction = \"sheets\" with moving = true or a stream is not built yet; use \"leaves\"");
     for (const film::Wire& wire : input_.films->wires)
         if (wire.moves() || (wire.ring && wire.ring->blow != 0.0))
             throw InputError("vortex_particle: wires that move or blow are not built yet");
@@ -170,12 +171,15 @@ MeshFlow VortexParticleSolver::particles_to_mesh() const {
                   .area = std::move(sum.area),
                   .outflow = {},
                   .velocity = triangle_velocity(surface_, particles_, bins_, velocity_)};
-    for (std::size_t v = 0; v < surface_.vertices(); ++v) {
+    for (std::size_t v = 0; v < surface_.vertices(); ++v)
         if (!(flow.area[v] > 0.0))
             throw NumericalError(fmt::format("vortex_particle: at {} s, step {}, no particle is left around vertex {}",
                                              time_, steps_, v));
-        flow.thickness[v] /= flow.area[v];
-        flow.surfactant[v] /= flow.area[v];
+    std::vector<double> area = flow.area;
+    for (std::vector<double>* column : {&flow.thickness, &flow.surfactant, &area}) add_up_joints(surface_, *column);
+    for (std::size_t v = 0; v < surface_.vertices(); ++v) {
+        flow.thickness[v] /= area[v];
+        flow.surfactant[v] /= area[v];
     }
     flow.outflow = divergence(surface_, stream_.relative(flow.velocity));
     return flow;
@@ -226,10 +230,13 @@ std::vector<double> VortexParticleSolver::compress(double dt, MeshFlow& flow) {
     iterations_ = 0;
     if (!options_.incompressible) {
         const SurfactantProblem problem = surfactant_problem(dt, flow);
+        const VertexMatrix& unknowns = compression_.unknowns();
         const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
-            y.resize(x.size());
-            for (std::size_t v = 0; v < x.size(); ++v) y[v] = problem.mass[v] * x[v];
-            add_stiffness(surface_, problem.stiffness, problem.weight, x, y);
+            const std::vector<double> change = unknowns.spread(x);
+            std::vector<double> image(change.size());
+            for (std::size_t v = 0; v < image.size(); ++v) image[v] = problem.mass[v] * change[v];
+            add_stiffness(surface_, problem.stiffness, problem.weight, change, image);
+            y = unknowns.sums(image);
         };
         const auto precondition = [&](const std::vector<double>& x, std::vector<double>& y) {
             y = x;
@@ -237,11 +244,12 @@ std::vector<double> VortexParticleSolver::compress(double dt, MeshFlow& flow) {
         };
         if (reference_.step != dt) refresh_reference(dt, flow);
         constexpr int kMostIterations = 200, kSlow = 12;
-        std::vector<double> change(surface_.vertices(), 0.0);
+        std::vector<double> x(unknowns.size(), 0.0);
         const linalg::IterativeSolution done = linalg::preconditioned_conjugate_gradient(
-            apply, precondition, problem.right, change, options_.solve_tolerance, kMostIterations);
+            apply, precondition, unknowns.sums(problem.right), x, options_.solve_tolerance, kMostIterations);
         note_iterations(done.iterations, done.residual);
         if (done.iterations > kSlow) reference_.step = 0.0;  // the next step factors anew
+        const std::vector<double> change = unknowns.spread(x);
         for (std::size_t v = 0; v < dilatation.size(); ++v) dilatation[v] = -change[v] / (dt * flow.surfactant[v]);
     }
     take_dilatation(dilatation, flow);
@@ -286,7 +294,7 @@ void VortexParticleSolver::hold_walls(MeshFlow& flow) {
     recover_velocity(flow);
     const std::vector<double> held = curl(surface_, flow.velocity);
     for (std::size_t v = 0; v < surface_.vertices(); ++v)
-        if (surface_.loop[v] >= 0) flow.circulation[v] = held[v];
+        if (surface_.loop[v] >= 0 && surface_.place[v] != Place::kInside) flow.circulation[v] = held[v];
     std::fill(hole_circulation_.begin(), hole_circulation_.end(), 0.0);
 }
 
@@ -413,7 +421,8 @@ void VortexParticleSolver::move_particles(double dt, const MeshFlow& flow) {
         const double ahead = 0.5 * dt / step_;
         for (std::size_t t = 0; t < velocity.size(); ++t) velocity[t] += ahead * (velocity[t] - velocity_[t]);
     }
-    trace(surface_, vertex_velocity(surface_, velocity), dt, particles_);
+    const Draw draw{input_.seed, static_cast<std::uint64_t>(steps_) + 1};  // 0 has placed the particles
+    trace(surface_, vertex_velocity(surface_, velocity), dt, particles_, draw);
     if (surface_.open()) exchange_with_stream(dt);
     bins_ = sort_by_triangle(particles_, surface_.triangles());
     fill_empty_triangles(surface_, particles_, bins_);
