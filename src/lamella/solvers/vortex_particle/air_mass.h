@@ -33,17 +33,27 @@ public:
     void factorize(const Surface& s);
     /// momentum_i += the air's, of speeds v_i along vertex normals [kg m/s]
     void add(std::span<const double> speed, std::span<double> momentum) const;
-    /// Between that of the longest waves and that of the shortest [kg/m^2].
-    double middle() const { return middle_; }
+    /// For `yield`: of a film of `mass` per area [kg/m^2] whose tension acts within a step like the inertia
+    /// stiffness L, [kg].
+    void fit_inverse(double mass, double stiffness);
+    /// speed = about (area (mass + m + stiffness L))^-1 momentum, by the same equations in another sum. Good to some
+    /// percent as long as the film is even: it preconditions.
+    void yield(std::span<const double> momentum, std::span<double> speed) const;
 
 private:
+    void factor(const Surface& s, const std::vector<double>& shift, const std::vector<double>& weight);
     void remove_mean(std::vector<double>& density) const;
 
+    std::vector<std::vector<double>> solutions(std::span<const double> right) const;
+
     struct Term {
-        double weight;
+        double weight;   ///< w_j
+        double shift;    ///< s_j [1/m^2]
+        double inverse;  ///< its part in the film's yielding
         linalg::DefiniteSolver factors;
     };
-    double density_, constant_ = 0.0, middle_ = 0.0;
+    double density_, constant_ = 0.0;
+    double longest_ = 0.0, shortest_ = 0.0;  ///< L of waves, about [1/m^2]
     VertexMatrix matrix_;
     std::vector<Term> terms_;
     std::vector<double> area_;  ///< of vertices when it was factored

@@ -60,10 +60,12 @@ public:
           speeds_(p.membrane.size()),
           soap_(p.surfactant != nullptr ? p.surface.vertices() : 0),
           inertia_(p.membrane.mean_inertia()),
-          width_(p.surface.mean_edge * static_cast<double>(p.surface.vertices()) / p.surface.total_area) {
+          width_(p.surface.mean_edge * static_cast<double>(p.surface.vertices()) / p.surface.total_area),
+          unknown_(p.mesh.position.size(), p.membrane.size()) {
+        for (std::size_t u = 0; u < speeds_; ++u) unknown_[p.membrane.vertex(u)] = u;
         for (const auto& slope : gas_.slope) {
             std::vector<double> y = slope;
-            p.membrane.solve(y);
+            yield(y);
             yield_.push_back(std::move(y));
         }
         const std::size_t count = gas_.region.size();
@@ -126,7 +128,7 @@ public:
         x = y;
         const std::span speed(x.data(), speeds_);
         for (double& s : speed) s *= inertia_;
-        p_.membrane.precondition(speed);
+        yield(speed);
         const std::size_t count = gas_.region.size();
         std::vector<double> growth(count);
         for (std::size_t r = 0; r < count; ++r)
@@ -152,20 +154,39 @@ private:
     void inertia(const double* x, double* y) const {
         p_.membrane.multiply(std::span(x, speeds_), std::span(y, speeds_));
         if (p_.air == nullptr) return;
-        std::vector<double> speed(p_.surface.vertices(), 0.0), momentum(p_.surface.vertices(), 0.0);
-        std::vector<std::size_t> unknown(p_.mesh.position.size(), speeds_);
-        for (std::size_t u = 0; u < speeds_; ++u) unknown[p_.membrane.vertex(u)] = u;
-        for (std::size_t v = 0; v < speed.size(); ++v)
-            if (unknown[p_.surface.site[v]] < speeds_) speed[v] = p_.share[v] * x[unknown[p_.surface.site[v]]];
+        const std::vector<double> speed = at_surface(x);
+        std::vector<double> momentum(speed.size(), 0.0);
         p_.air->add(speed, momentum);
-        for (std::size_t v = 0; v < speed.size(); ++v)
-            if (unknown[p_.surface.site[v]] < speeds_) y[unknown[p_.surface.site[v]]] += p_.share[v] * momentum[v];
+        add_from_surface(momentum, y);
+    }
+
+    /// x = about M'^-1 x.
+    void yield(std::span<double> x) const {
+        if (p_.air == nullptr) return p_.membrane.precondition(x);
+        const std::vector<double> momentum = at_surface(x.data());
+        std::vector<double> speed(momentum.size());
+        p_.air->yield(momentum, speed);
+        std::fill(x.begin(), x.end(), 0.0);
+        add_from_surface(speed, x.data());
+    }
+
+    /// Of unknowns, along the normals of the surface; air is not built where a vertex of the films has several.
+    std::vector<double> at_surface(const double* x) const {
+        std::vector<double> value(p_.surface.vertices(), 0.0);
+        for (std::size_t v = 0; v < value.size(); ++v)
+            if (const std::size_t u = unknown_[p_.surface.site[v]]; u < speeds_) value[v] = p_.share[v] * x[u];
+        return value;
+    }
+    void add_from_surface(const std::vector<double>& value, double* x) const {
+        for (std::size_t v = 0; v < value.size(); ++v)
+            if (const std::size_t u = unknown_[p_.surface.site[v]]; u < speeds_) x[u] += p_.share[v] * value[v];
     }
 
     const KickProblem& p_;
     Gas gas_;
     std::size_t speeds_, soap_;
     double inertia_, width_;
+    std::vector<std::size_t> unknown_;        ///< of each vertex of the films; speeds_ where there is none
     std::vector<std::vector<double>> yield_;  ///< M'^-1 grad V, as factored
     std::vector<double> coupling_;            ///< grad V_a . M'^-1 grad V_b
 };

@@ -25,13 +25,13 @@ struct SurfactantProblem {
 struct KickProblem {
     const mesh::FoamMesh& mesh;  ///< in the middle of the step, as all that follows
     const Surface& surface;
-    const Membrane& membrane;  ///< assembled for this step, factored for some step
+    const Membrane& membrane;  ///< assembled for this step; factored for some step where no air acts
     double dt;
     std::vector<double> speed;     ///< of the membrane's unknowns at the start [m/s]
     std::vector<double> force;     ///< on them, without gas [N]
     std::vector<double> pressure;  ///< of regions, a guess [Pa]
     std::vector<double> share;     ///< of the air at each vertex of the surface: +-1, to the membrane's direction
-    const AirMass* air;            ///< or nothing
+    const AirMass* air;            ///< with its inverse for this step; or nothing
     const SurfactantProblem* surfactant;  ///< or nothing, where it does not act
     double tolerance;
 };

@@ -286,6 +286,7 @@ std::vector<double> VortexParticleSolver::kick_films(double dt, MeshFlow& flow) 
         factor_moving();
     }
     m.membrane.assemble(surface_, mass, tension, dt);
+    fit_air(dt, mass, tension);
     std::vector<double> speed = m.membrane.speeds(m.velocity);
     for (double& v : speed) v *= std::exp(-options_.motion.damping * dt);
     const SurfactantProblem surfactant = options_.incompressible ? SurfactantProblem{} : surfactant_problem(dt, flow);
@@ -341,15 +342,19 @@ void VortexParticleSolver::factor_moving() {
         compression_.factorize(surface_, r.step * surfactant_strength_, weight, mass);
     }
     if (viscosity_ > 0.0) diffusion_.factorize(surface_, viscosity_ * r.step);
-    mass = r.mass;
-    if (m.air) {
-        m.air->factorize(surface_);
-        for (std::size_t v = 0; v < surface_.vertices(); ++v)
-            mass[surface_.site[v]] += m.air->middle() * surface_.vertex_area[v];
-    }
+    if (m.air) return m.air->factorize(surface_);
     m.membrane.aim(m.films);
-    m.membrane.assemble(surface_, mass, r.tension, r.step);
+    m.membrane.assemble(surface_, r.mass, r.tension, r.step);
     m.membrane.factorize();
+}
+
+/// What one step takes of the air: its inverse for a film that is as heavy and tense everywhere as in the mean.
+void VortexParticleSolver::fit_air(double dt, const std::vector<double>& mass, const std::vector<double>& tension) {
+    if (!moving_->air) return;
+    double heavy = 0.0, tense = 0.0;
+    for (const double m : mass) heavy += m / surface_.total_area;
+    for (std::size_t t = 0; t < tension.size(); ++t) tense += tension[t] * surface_.area[t] / surface_.total_area;
+    moving_->air->fit_inverse(heavy, 0.25 * dt * dt * tense);
 }
 
 /// As `diffuse`, with factors of another step.

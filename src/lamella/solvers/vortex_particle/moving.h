@@ -22,6 +22,7 @@ struct VortexParticleSolver::Moving {
     Vectors carry;                 ///< the steady motion of each cluster as a whole, in which the flow is told [m/s]
     std::vector<double> pressure;  ///< of regions in the last step, over the outside's [Pa]
     std::size_t next_event = 0;
+    Vectors looked_at;  ///< where the films were when the tracker last looked at their triangles [m]
 
     /// For which the equations are factored; the factors precondition those of other steps.
     struct Reference {
@@ -33,7 +34,8 @@ struct VortexParticleSolver::Moving {
         std::vector<double> tension;                ///< of triangles [N/m]
     } reference;
 
-    Moving(const mesh::FoamMesh& mesh, const Surface& s) : films(mesh), membrane(mesh, s) {}
+    Moving(const mesh::FoamMesh& mesh, const Surface& s)
+        : films(mesh), membrane(mesh, s), looked_at(mesh.position) {}
 };
 
 }  // namespace lamella::vortex_particle

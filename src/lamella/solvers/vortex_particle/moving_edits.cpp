@@ -26,7 +26,7 @@ void VortexParticleSolver::settle_films() {
     mesh::staged_move(*m.tracker, displacement);
     if (!(m.tracker->mesh().position == m.films.position)) place_films(m.tracker->mesh().position, {});
     if (options_.motion.remeshing) {
-        edit_films([&] { m.tracker->remesh(); });
+        if (triangles_are_due()) edit_films([&] { m.tracker->remesh(); });
     } else {
         constexpr double kSharpest = 1.0;  // degrees
         const double degrees = mesh::min_angle(m.films) * 180.0 / std::numbers::pi;
@@ -37,6 +37,25 @@ void VortexParticleSolver::settle_films() {
                             time_, steps_, degrees));
     }
     apply_events();
+}
+
+/// Whether films have gone half an edge, or an edge has become longer or shorter by a twentieth, since the tracker looked:
+/// an edit costs all factors.
+bool VortexParticleSolver::triangles_are_due() const {
+    constexpr double kWay = 0.5, kStretch = 0.05;
+    const Moving& m = *moving_;
+    const double way = kWay * surface_.mean_edge;
+    for (const VertexId v : m.films.position.ids())
+        if (squared_norm(m.films.position[v] - m.looked_at[v]) > way * way) return true;
+    const auto stretched = [&](VertexId a, VertexId b) {
+        const double ratio =
+            norm(m.films.position[b] - m.films.position[a]) / norm(m.looked_at[b] - m.looked_at[a]);
+        return !(std::abs(ratio - 1.0) < kStretch);
+    };
+    return std::any_of(m.films.faces.begin(), m.films.faces.end(), [&](const mesh::Face& face) {
+        const auto& [a, b, c] = face.vertices;
+        return stretched(a, b) || stretched(b, c) || stretched(c, a);
+    });
 }
 
 void VortexParticleSolver::edit_films(const std::function<void()>& edit) {
@@ -55,6 +74,7 @@ void VortexParticleSolver::edit_films(const std::function<void()>& edit) {
     for (const mesh::TopologyEvent& event : events)
         events_.push_back({time_, std::string(mesh::name(event.kind)), event.position,
                            fmt::format("regions {} {}", index(event.a), index(event.b))});
+    moving_->looked_at = moving_->films.position;
     if (moving_->tracker->mesh() == moving_->films) return;
     const Surface before = surface_;
     const mesh::FoamMesh films_before = moving_->films;

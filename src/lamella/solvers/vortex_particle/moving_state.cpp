@@ -85,6 +85,7 @@ void VortexParticleSolver::save_moving(sim::StateWriter& out) const {
     };
     write("film/velocity", flat(m.velocity));
     write("film/carry", flat(m.carry));
+    write("film/looked_at", flat(m.looked_at));
     write("film/pressure", m.pressure);
     out.write_value("film/next_event", static_cast<std::int64_t>(m.next_event));
     out.write_value("film/reference/step", m.reference.step);
@@ -104,6 +105,7 @@ void VortexParticleSolver::load_moving(sim::StateReader& in) {
     const std::size_t vertices = m.films.position.size();
     read_vectors(in, "film/velocity", vertices, m.velocity);
     read_vectors(in, "film/carry", vertices, m.carry);
+    read_vectors(in, "film/looked_at", vertices, m.looked_at);
     in.read("film/pressure", m.films.regions.size(), m.pressure);
     const std::int64_t next = in.read_integer("film/next_event");
     if (next < 0 || next > static_cast<std::int64_t>(input_.films->events.size()))

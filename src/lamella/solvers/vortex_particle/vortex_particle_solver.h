@@ -111,8 +111,10 @@ private:
     void stay_with_air(std::vector<double>& speed) const;
     std::vector<double> outward_signs() const;
     void factor_moving();
+    void fit_air(double dt, const std::vector<double>& mass, const std::vector<double>& tension);
     void diffuse_moving(double dt, MeshFlow& flow) const;
     void settle_films();
+    bool triangles_are_due() const;
     void edit_films(const std::function<void()>& edit);
     void follow_velocities(const Surface& before, const Relaid& change);
     void follow_holes(const Surface& before, const mesh::CompactionMaps& maps);
