@@ -59,6 +59,9 @@ stick|vortex_particle/stick-small --set vortex_particle.particles_in_frames=true
 vortex-street|vortex_particle/street-small|60||A film streams around a disk: a street of vortices
 water-strider|vortex_particle/strider-small|40||Two legs of a water strider row through a film
 springing-flat|vortex_particle/hemisphere-small|8||Half a bubble on a ring lets its air out and springs flat
+bursting-half-bubble|vortex_particle/half-bubble-pop-small|22||The upper half of a bubble in a ring has burst, the lower one springs through
+frame-drains|vortex_particle/frame-small|12||Liquid runs from film to film in a wire cube
+swinging-cube|vortex_particle/cube-oscillation-small|20||A bubble that began as a cube swings
 giant-bubble|vortex_particle/giant-bubble-small|30||A giant bubble that was blown askew swings
 joining-bubbles|vortex_particle/double-bubble-small|20||Two bubbles with a vortex each have flown together
 billowing-film|vortex_particle/deforming-rectangle-small|12|--camera -62,-20,1.2|A film that is thick above comes down and billows

@@ -230,5 +230,37 @@ TEST(DoubleBubble, RunsThroughAPopWithoutLosingLiquid) {
     EXPECT_LT(scalar(*solver, "max_velocity"), 20.0);
 }
 
+/// The lower half takes up what the upper one was, from its border, and no faster than its waves run.
+TEST(HalfBubble, TakesUpTheOtherHalfWhenThatBursts) {
+    auto solver = solver_of(R"(
+[[film]]
+shape = "ball_in_ring"
+radius = 0.1
+[[event]]
+time = 0.0
+region = 1
+into = 0
+[resolution]
+edge_length = 0.015
+[vortex_particle]
+moving = true
+air_drag = 0.5
+[vortex_particle.motion]
+added_air = true
+damping = 1.0
+)");
+    solver->start({});
+    const double liquid = sum(solver->particles().volume);
+    EXPECT_NEAR(scalar(*solver, "mesh_volume_error"), -0.5, 0.02);  // in the border
+    double fastest = 0.0;
+    while (solver->time() < 1.0) {
+        solver->advance(1.0);
+        fastest = std::max(fastest, scalar(*solver, "max_mach"));
+    }
+    EXPECT_LT(fastest, 0.6);
+    EXPECT_NEAR(scalar(*solver, "mesh_volume_error"), 0.0, 0.1);
+    EXPECT_NEAR(sum(solver->particles().volume) / liquid, 1.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace lamella::vortex_particle

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// The six films of a tetrahedral frame drain into one profile of thickness, eta = c exp(-k z) [method sheet 12.1], with
-/// one constant, from all the liquid that there is: it has run from film to film.
+/// The six films of a tetrahedral frame drain into one profile of thickness, eta = c exp(-k z) [method sheet 12.1],
+/// with one constant, from all the liquid that there is: it has run from film to film.
 TEST(FilmsInAFrame, DrainIntoOneProfile) {
     auto solver = solver_of(R"(
 [material]
@@ -61,13 +61,15 @@ std::filesystem::path three_strips(int cells, double width) {
         for (int j = 0; j <= across; ++j) {
             const int strip = r == 0 ? 0 : (r - 1) / cells, i = r == 0 ? 0 : (r - 1) % cells + 1;
             const double angle = 2.0 * kPi / 3.0 * strip, x = static_cast<double>(i) / cells;
-            file << fmt::format("v {:.17g} {:.17g} {:.17g}\n", x * std::cos(angle), x * std::sin(angle), width * j / across);
+            file << fmt::format("v {:.17g} {:.17g} {:.17g}\n", x * std::cos(angle), x * std::sin(angle),
+                                width * j / across);
         }
     for (int strip = 0; strip < 3; ++strip)
         for (int i = 0; i < cells; ++i)
             for (int j = 0; j < across; ++j) {
                 const auto at = [&](int di, int dj) { return row(strip, i + di) * (across + 1) + j + dj + 1; };
-                file << fmt::format("f {} {} {}\nf {} {} {}\n", at(0, 0), at(1, 0), at(1, 1), at(0, 0), at(1, 1), at(0, 1));
+                file << fmt::format("f {} {} {}\nf {} {} {}\n", at(0, 0), at(1, 0), at(1, 1), at(0, 0), at(1, 1),
+                                    at(0, 1));
             }
     return path;
 }

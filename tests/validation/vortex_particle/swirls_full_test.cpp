@@ -1,4 +1,5 @@
-// What takes minutes: where the fate of two Taylor vortices turns, on two meshes; their energy; leapfrog [method sheet 12.2, 12.3].
+// What takes minutes: where the fate of two Taylor vortices turns, on two meshes; their energy; leapfrog [method
+// sheet 12.2, 12.3].
 
 #include <gtest/gtest.h>
 
@@ -48,7 +49,8 @@ TEST(TaylorVortices, KeepTheirEnergyInAnElasticFilmInBalance) {
 }
 
 /// Cores of a tenth of the vortices' distance stay apart for three swaps. Steps have to be short against a core's turn,
-/// 0.06 s: in those of 0.005 s vortices win energy, 2.7 % until the first swap, and the third interval is 5 % too short.
+/// 0.06 s: in those of 0.005 s vortices win energy, 2.7 % until the first swap, and the third interval is 5 % too
+/// short.
 TEST(Leapfrog, SwapsPlacesThreeTimesWhenPointVorticesDo) {
     const std::vector<double> exact = point_swaps(7.4);
     ASSERT_EQ(exact.size(), 3u);

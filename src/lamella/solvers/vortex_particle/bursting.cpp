@@ -71,9 +71,12 @@ void VortexParticleSolver::look_for_rupture() {
 
 std::optional<std::string> VortexParticleSolver::stop_reason() const {
     switch (end_) {
-        case End::kNone: break;
-        case End::kRupture: return "the film is as thin as rupture_thickness and bursts";
-        case End::kNoFilm: return "the last film has burst";
+        case End::kNone:
+            break;
+        case End::kRupture:
+            return "the film is as thin as rupture_thickness and bursts";
+        case End::kNoFilm:
+            return "the last film has burst";
     }
     return std::nullopt;
 }

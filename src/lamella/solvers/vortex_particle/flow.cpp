@@ -44,7 +44,8 @@ std::vector<int> potential_unknowns(const Surface& s) {
     std::vector<std::size_t> pinned = first_vertices(s);
     for (std::size_t v = 0; v < s.vertices(); ++v)
         if (s.lets_out(v)) pinned[films(v)] = s.vertices();
-    return numbered(s, [&](std::size_t v) { return s.lets_out(v) || v == pinned[films(v)]; }, s.joint);
+    return numbered(
+        s, [&](std::size_t v) { return s.lets_out(v) || v == pinned[films(v)]; }, s.joint);
 }
 
 /// None on outer walls, one for all vertices of the wall around a hole; free where film runs out between walls, which
@@ -153,7 +154,10 @@ std::vector<int> all_vertices(const Surface& s) {
 }  // namespace
 
 ShiftedStiffness::ShiftedStiffness(const Surface& s, Films films)
-    : matrix_(s, numbered(s, [](std::size_t) { return false; }, s.joint)), factors_(refactored(films)) {
+    : matrix_(s,
+              numbered(
+                  s, [](std::size_t) { return false; }, s.joint)),
+      factors_(refactored(films)) {
     factors_.analyze(matrix_.matrix());
 }
 

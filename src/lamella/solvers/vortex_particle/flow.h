@@ -60,8 +60,8 @@ private:
     mutable int iterations_ = 0;
 };
 
-/// (diag(mass) + scale K_w) x = b with a factorization that is kept while mass, scale and weights stay the same. Vertices
-/// at one place are one unknown.
+/// (diag(mass) + scale K_w) x = b with a factorization that is kept while mass, scale and weights stay the same.
+/// Vertices at one place are one unknown.
 class ShiftedStiffness {
 public:
     explicit ShiftedStiffness(const Surface& s, Films films = Films::kStill);

@@ -34,8 +34,7 @@ struct VortexParticleSolver::Moving {
         std::vector<double> tension;                ///< of triangles [N/m]
     } reference;
 
-    Moving(const mesh::FoamMesh& mesh, const Surface& s)
-        : films(mesh), membrane(mesh, s), looked_at(mesh.position) {}
+    Moving(const mesh::FoamMesh& mesh, const Surface& s) : films(mesh), membrane(mesh, s), looked_at(mesh.position) {}
 };
 
 }  // namespace lamella::vortex_particle

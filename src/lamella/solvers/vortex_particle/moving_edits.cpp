@@ -39,8 +39,8 @@ void VortexParticleSolver::settle_films() {
     apply_events();
 }
 
-/// Whether films have gone half an edge, or an edge has become longer or shorter by a twentieth, since the tracker looked:
-/// an edit costs all factors.
+/// Whether films have gone half an edge, or an edge has become longer or shorter by a twentieth, since the tracker
+/// looked: an edit costs all factors.
 bool VortexParticleSolver::triangles_are_due() const {
     constexpr double kWay = 0.5, kStretch = 0.05;
     const Moving& m = *moving_;
@@ -48,8 +48,7 @@ bool VortexParticleSolver::triangles_are_due() const {
     for (const VertexId v : m.films.position.ids())
         if (squared_norm(m.films.position[v] - m.looked_at[v]) > way * way) return true;
     const auto stretched = [&](VertexId a, VertexId b) {
-        const double ratio =
-            norm(m.films.position[b] - m.films.position[a]) / norm(m.looked_at[b] - m.looked_at[a]);
+        const double ratio = norm(m.films.position[b] - m.films.position[a]) / norm(m.looked_at[b] - m.looked_at[a]);
         return !(std::abs(ratio - 1.0) < kStretch);
     };
     return std::any_of(m.films.faces.begin(), m.films.faces.end(), [&](const mesh::Face& face) {

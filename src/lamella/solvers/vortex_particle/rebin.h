@@ -21,7 +21,7 @@ struct Laid {
 
 /// What an edit did to the triangles.
 struct Relaid {
-    std::vector<std::uint32_t> kept;    ///< of each former triangle, which one it is now; kNoTriangle: none
+    std::vector<std::uint32_t> kept;  ///< of each former triangle, which one it is now; kNoTriangle: none
     /// Of each triangle now: it lies where one was that faced the other way. The leaf of a bubble in front of a film is
     /// seen from that side; when the bubble opens it becomes the whole film, which is seen from the other.
     std::vector<std::uint8_t> turned;

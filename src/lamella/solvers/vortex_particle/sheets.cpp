@@ -55,7 +55,8 @@ void join_neighbors(const mesh::EdgeFaces& edges, Surface& s) {
         if (uses.size() == 2) {
             if (uses[0].forward == uses[1].forward)
                 throw InputError(
-                    "vortex_particle: neighboring triangles of the film face opposite ways; turn its faces to one side");
+                    "vortex_particle: neighboring triangles of the film face opposite ways; turn its faces to one "
+                    "side");
             for (const std::size_t i : {0U, 1U})
                 s.neighbor[uses[i].triangle][uses[i].opposite] = static_cast<std::int32_t>(uses[1 - i].triangle);
         } else if (uses.size() > 2) {

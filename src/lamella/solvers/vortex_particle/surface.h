@@ -125,7 +125,8 @@ enum class Junction {
 
 /// @param stream  the velocity with which film runs through it [m/s], in where it points into the film and out where it
 ///                points out; 0: it is closed
-/// @throws InputError  films without bubbles that meet in a triple line, as leaves; films that cannot be oriented or that
+/// @throws InputError  films without bubbles that meet in a triple line, as leaves; films that cannot be oriented or
+/// that
 ///                     fill space; a stream that does not run along a flat film and its walls
 Surface surface_of(const mesh::FoamMesh& mesh,
                    Walls walls = Walls::kSlip,

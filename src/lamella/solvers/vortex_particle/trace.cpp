@@ -88,8 +88,7 @@ Spot seen_from(const Surface& s, const Spot& spot, std::size_t k, const Incidenc
     Spot seen{other.triangle, {}};
     for (std::size_t j = 0; j < 3; ++j)
         for (std::size_t i = 0; i < 3; ++i)
-            if (i != k && j != other.k &&
-                s.site[s.corner[other.triangle][j]] == s.site[s.corner[spot.triangle][i]])
+            if (i != k && j != other.k && s.site[s.corner[other.triangle][j]] == s.site[s.corner[spot.triangle][i]])
                 seen.place[j] = spot.place[i];
     return seen;
 }
@@ -103,7 +102,8 @@ bool cross_seam(const Surface& s, Spot& spot, std::size_t k, Vec3& displacement,
         const Spot seen = seen_from(s, spot, k, other);
         double flow = 0.0;
         for (std::size_t j = 0; j < 3; ++j)
-            flow += seen.place[j] * dot(passage.velocity[s.corner[other.triangle][j]], inward(s, other.triangle, other.k));
+            flow +=
+                seen.place[j] * dot(passage.velocity[s.corner[other.triangle][j]], inward(s, other.triangle, other.k));
         return std::max(0.0, flow);
     };
     double total = 0.0;
@@ -173,8 +173,7 @@ bool go(const Surface& s, Spot& spot, Vec3 displacement, Passage* passage) {
 
 bool walk(const Surface& s, Spot& spot, Vec3 displacement) { return go(s, spot, displacement, nullptr); }
 
-void trace(
-    const Surface& s, std::span<const Vec3> velocity, double dt, Particles& particles, const Draw& draw) {
+void trace(const Surface& s, std::span<const Vec3> velocity, double dt, Particles& particles, const Draw& draw) {
     const std::vector<Rates> rates = corner_rates(s, velocity);
     parallel_for(particles.size(), [&](std::size_t p) {
         const Spot start{particles.triangle[p], particles.place[p]};
@@ -201,7 +200,8 @@ void trace(
         if (inside(near)) {
             spot.place = near;
         } else {
-            if (s.jointed()) passage.chance = uniform01(random_bits(draw.seed, RandomStream::kFilmParticle, draw.step, p));
+            if (s.jointed())
+                passage.chance = uniform01(random_bits(draw.seed, RandomStream::kFilmParticle, draw.step, p));
             stays = go(s, spot, dt * vector_of(s, t, mean), &passage);
         }
         normalize(spot.place);

@@ -34,7 +34,6 @@ struct Draw {
 /// get the triangle kGone. Over a triple line each goes on into one of the other films, with a probability as the flow
 /// into it is; its circulation is then seen from the side of that film which lies in the same wedge.
 /// @param velocity  of vertices [m/s]
-void trace(
-    const Surface& s, std::span<const Vec3> velocity, double dt, Particles& particles, const Draw& draw = {});
+void trace(const Surface& s, std::span<const Vec3> velocity, double dt, Particles& particles, const Draw& draw = {});
 
 }  // namespace lamella::vortex_particle
