@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "process_team.h"
+#include <numeric>
 
 namespace lamella::dist {
 namespace {
@@ -127,15 +128,51 @@ TEST(Halo, KeepsCopiesUpToDateThroughRenumbering) {
     });
 }
 
-TEST(Gather, IsUndoneByScatter) {
-    as_processes(4, [&](const std::shared_ptr<Communicator>& processes) {
-        const Share share = share_of(10, *processes);
-        std::vector<std::int64_t> own;
-        for (std::int64_t i = 0; i < share.count; ++i) own.push_back(share.first + i);
-        const auto all = gather(*processes, std::span<const std::int64_t>(own));
-        EXPECT_EQ(all.size(), processes->rank() == 0 ? 10U : 0U);
-        for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], static_cast<std::int64_t>(i));
-        EXPECT_EQ(scatter(*processes, std::span<const std::int64_t>(all), 10), own);
+TEST(Gather, IsUndoneByScatterInPiecesOfAnySize) {
+    std::vector<std::int64_t> whole(10);
+    std::iota(whole.begin(), whole.end(), 0);
+    for (const std::size_t values : {1U, 2U, 3U, 100U})
+        as_processes(4, [&](const std::shared_ptr<Communicator>& processes) {
+            const Share share = share_of(10, *processes);
+            const auto from = whole.begin() + share.first;
+            const std::vector<std::int64_t> own(from, from + share.count);
+            EXPECT_EQ(gather(*processes, std::span(own)), processes->rank() == 0 ? whole : std::vector<std::int64_t>());
+            std::vector<std::int64_t> pieces;
+            const std::size_t bytes = values * sizeof(std::int64_t);
+            gather_in_pieces(
+                *processes, std::span(own),
+                [&](std::span<const std::int64_t> piece) {
+                    EXPECT_LE(piece.size(), values);
+                    pieces.insert(pieces.end(), piece.begin(), piece.end());
+                },
+                bytes);
+            EXPECT_EQ(pieces, processes->rank() == 0 ? whole : std::vector<std::int64_t>());
+            const auto fetch = [&](std::int64_t first, std::size_t count) {
+                EXPECT_LE(count, values);
+                return std::vector(whole.begin() + first, whole.begin() + first + static_cast<std::int64_t>(count));
+            };
+            EXPECT_EQ(scatter_in_pieces<std::int64_t>(*processes, 10, fetch, bytes), own);
+        });
+}
+
+TEST(Gather, InPiecesFailsForAllWhereTheFileFails) {
+    as_processes(3, [&](const std::shared_ptr<Communicator>& processes) {
+        const std::vector<double> own(5, 1.0);
+        std::size_t taken = 0;
+        const auto take = [&](std::span<const double> piece) {
+            taken += piece.size();
+            if (taken >= 6) throw IoError("the disk is full");
+        };
+        EXPECT_THROW(gather_in_pieces(*processes, std::span<const double>(own), take, 2 * sizeof(double)), IoError);
+        EXPECT_TRUE(taken == 0 || taken == 7) << "nothing is taken after the failure: pieces of 2, 2, 1, 2";
+        std::size_t fetched = 0;
+        const auto fetch = [&](std::int64_t, std::size_t count) -> std::vector<double> {
+            if (++fetched == 4) throw InputError("damaged");
+            return std::vector<double>(count);
+        };
+        EXPECT_THROW(scatter_in_pieces<double>(*processes, 30, fetch, 2 * sizeof(double)), InputError);
+        const auto absent = [](std::int64_t, std::size_t) -> std::vector<double> { throw InputError("shorter"); };
+        EXPECT_THROW(scatter_in_pieces<double>(*processes, std::int64_t{1} << 48, absent), InputError);
     });
 }
 

@@ -46,16 +46,16 @@ auto in_step(Communicator& processes, Work&& work) {
     }
 }
 
-/// Joins the columns that the processes hold parts of, on process 0. There `out` is the file, elsewhere it is empty.
+/// Brings what the processes save to process 0, columns piece by piece. There `out` is the file, elsewhere it is empty.
 class JoiningWriter final : public sim::StateWriter {
 public:
     JoiningWriter(Communicator& processes, sim::StateWriter* out) : processes_(processes), out_(out) {}
     void write(std::string_view name, std::span<const double> v) override { put(name, v); }
     void write(std::string_view name, std::span<const std::int64_t> v) override { put(name, v); }
     void write(std::string_view name, std::span<const std::int32_t> v) override { put(name, v); }
-    void write_part(std::string_view name, std::span<const double> v, sim::Part) override { join(name, v); }
-    void write_part(std::string_view name, std::span<const std::int64_t> v, sim::Part) override { join(name, v); }
-    void write_part(std::string_view name, std::span<const std::int32_t> v, sim::Part) override { join(name, v); }
+    void write_part(std::string_view name, std::span<const double> v, sim::Part p) override { join(name, v, p); }
+    void write_part(std::string_view name, std::span<const std::int64_t> v, sim::Part p) override { join(name, v, p); }
+    void write_part(std::string_view name, std::span<const std::int32_t> v, sim::Part p) override { join(name, v, p); }
 
 private:
     template <class T>
@@ -65,16 +65,20 @@ private:
         });
     }
     template <class T>
-    void join(std::string_view name, std::span<const T> values) {
-        const std::vector<T> all = dist::gather(processes_, values);
-        put(name, std::span<const T>(all));
+    void join(std::string_view name, std::span<const T> values, sim::Part part) {
+        if (part.total == 0) return put(name, values);
+        std::int64_t at = 0;
+        dist::gather_in_pieces(processes_, values, [&](std::span<const T> piece) {
+            out_->write_part(name, piece, {at, part.total});
+            at += static_cast<std::int64_t>(piece.size());
+        });
     }
 
     Communicator& processes_;
     sim::StateWriter* out_;
 };
 
-/// Shares out what process 0 reads. There `in` is the file, elsewhere it is empty.
+/// Shares out what process 0 reads, columns piece by piece. There `in` is the file, elsewhere it is empty.
 class SharingReader final : public sim::StateReader {
 public:
     SharingReader(Communicator& processes, sim::StateReader* in) : processes_(processes), in_(in) {}
@@ -87,21 +91,21 @@ public:
 
 private:
     template <class T>
-    void fetch(std::string_view name, std::size_t count, std::vector<T>& values) {
+    void copy(std::string_view name, std::size_t count, std::vector<T>& values) {
         dist::together(processes_, [&] {
             if (in_ != nullptr) in_->read(name, count, values);
         });
-    }
-    template <class T>
-    void copy(std::string_view name, std::size_t count, std::vector<T>& values) {
-        fetch(name, count, values);
         values.resize(count);
         processes_.broadcast(std::as_writable_bytes(std::span(values)));
     }
     template <class T>
     void share(std::string_view name, std::size_t count, std::vector<T>& values) {
-        fetch(name, count, values);
-        values = dist::scatter(processes_, std::span<const T>(values), static_cast<std::int64_t>(count));
+        const auto total = static_cast<std::int64_t>(count);
+        values = dist::scatter_in_pieces<T>(processes_, total, [&](std::int64_t first, std::size_t wanted) {
+            std::vector<T> piece;
+            in_->read_stretch(name, {first, total}, wanted, piece);
+            return piece;
+        });
     }
 
     Communicator& processes_;
