@@ -70,6 +70,32 @@ TEST(Sum, OfATrillionTermsHasRoomForTheLargest) {
     EXPECT_EQ(sum, 6.0);
 }
 
+TEST(Sum, GoesTogetherWithMaxima) {
+    as_processes(3, [&](const std::shared_ptr<Communicator>& processes) {
+        FixedSum sums[] = {FixedSum(10.0), FixedSum(10.0)};
+        sums[0].add(processes->rank() + 0.5);
+        sums[1].add(-1.0);
+        double maxima[] = {1.0 * processes->rank(), -2.0 - processes->rank()};
+        reduce(*processes, sums, maxima);
+        EXPECT_EQ(sums[0].value(), 4.5);
+        EXPECT_EQ(sums[1].value(), -3.0);
+        EXPECT_EQ(maxima[0], 2.0);
+        EXPECT_EQ(maxima[1], -2.0);
+    });
+}
+
+TEST(Migration, KeepsWhatStaysInPlaceAndFillsTheGaps) {
+    as_processes(2, [&](const std::shared_ptr<Communicator>& processes) {
+        // Process 0 gives two, drops two and gets one; process 1 gives one and gets two.
+        const bool first = processes->rank() == 0;
+        const int gone = Migration::kGone;
+        const Migration migration(*processes, first ? std::vector{0, 1, gone, 0, 1, 0, gone} : std::vector{1, 0, 1});
+        std::vector<int> items = first ? std::vector{0, 1, 2, 3, 4, 5, 6, -1, -1} : std::vector{10, 11, 12};
+        migration(items);
+        EXPECT_EQ(items, first ? (std::vector{0, 5, 11, 3}) : (std::vector{10, 1, 12, 4}));
+    });
+}
+
 TEST(Migration, BringsEveryItemToItsDestinationWithAllItsColumns) {
     constexpr std::int64_t kFar = std::int64_t{1} << 40;  // ids beyond 32 bits
     as_processes(5, [&](const std::shared_ptr<Communicator>& processes) {
