@@ -45,6 +45,9 @@ public:
     virtual void begin(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) = 0;
     virtual void end() = 0;
 
+    /// Time that this process has spent in reduce, exchange, begin and end: moving data, and waiting for others [s].
+    virtual double seconds() const { return 0.0; }
+
     /// Ends the other processes, and maybe this one: it met an error that they do not know of. Not collective.
     virtual void abort(int exit_code) = 0;
 };

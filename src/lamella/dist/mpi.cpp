@@ -43,6 +43,19 @@ void all_reduce(std::span<T> values, MPI_Datatype type, MPI_Op operation) {
     MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), type, operation, MPI_COMM_WORLD);
 }
 
+/// Adds the time for which it lives.
+class Stopwatch {
+public:
+    explicit Stopwatch(double& total) : total_(total), begin_(MPI_Wtime()) {}
+    ~Stopwatch() { total_ += MPI_Wtime() - begin_; }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+    double& total_;
+    double begin_;
+};
+
 class Mpi final : public Communicator {
 public:
     Mpi() {
@@ -67,6 +80,7 @@ public:
     int size() const override { return size_; }
 
     void reduce(std::span<std::int64_t> sums, std::span<double> maxima) override {
+        const Stopwatch stopwatch(seconds_);
         // MPI does not say what the largest of NaN and a number is; it could differ between processes.
         for (double& value : maxima)
             if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
@@ -90,12 +104,14 @@ public:
     }
 
     std::vector<std::int64_t> exchange(std::span<const std::int64_t> to_each) override {
+        const Stopwatch stopwatch(seconds_);
         std::vector<std::int64_t> from(to_each.size());
         MPI_Alltoall(to_each.data(), 1, MPI_INT64_T, from.data(), 1, MPI_INT64_T, MPI_COMM_WORLD);
         return from;
     }
 
     void begin(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
+        const Stopwatch stopwatch(seconds_);
         for (const Incoming& message : incoming)
             for_each_chunk(message.bytes, [&](std::span<std::byte> chunk) {
                 MPI_Irecv(chunk.data(), static_cast<int>(chunk.size()), MPI_BYTE, message.from, kTag, MPI_COMM_WORLD,
@@ -109,9 +125,12 @@ public:
     }
 
     void end() override {
+        const Stopwatch stopwatch(seconds_);
         MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
         requests_.clear();
     }
+
+    double seconds() const override { return seconds_; }
 
     void abort(int exit_code) override { MPI_Abort(MPI_COMM_WORLD, exit_code); }
 
@@ -124,6 +143,7 @@ private:
 
     int rank_ = 0;
     int size_ = 1;
+    double seconds_ = 0.0;
     MPI_Datatype together_ = MPI_DATATYPE_NULL;
     MPI_Op combine_ = MPI_OP_NULL;
     std::vector<MPI_Request> requests_;

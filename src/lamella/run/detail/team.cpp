@@ -4,6 +4,8 @@
 #include "lamella/dist/agree.h"
 #include "lamella/dist/gather.h"
 
+#include <sys/resource.h>
+
 #include <utility>
 
 namespace lamella::run {
@@ -12,7 +14,18 @@ namespace {
 using dist::Communicator;
 using Processes = std::shared_ptr<Communicator>;
 
-enum class Task : std::int64_t { kLeave, kCreate, kStart, kAdvance, kFrame, kScalars, kMarkFrame, kSave, kLoad };
+enum class Task : std::int64_t {
+    kLeave,
+    kCreate,
+    kStart,
+    kAdvance,
+    kFrame,
+    kScalars,
+    kMarkFrame,
+    kSave,
+    kLoad,
+    kReport
+};
 
 /// What process 0 tells the others to do.
 struct Order {
@@ -121,6 +134,18 @@ sim::Frame joined(Communicator& processes, sim::Frame share) {
     return share;
 }
 
+ProcessReport own_report(const Communicator* processes) {
+    struct rusage usage {};
+    ::getrusage(RUSAGE_SELF, &usage);
+    constexpr double kUnit = 1024.0;  // of Linux's ru_maxrss [bytes]
+    return {kUnit * static_cast<double>(usage.ru_maxrss), processes != nullptr ? processes->seconds() : 0.0};
+}
+
+std::vector<ProcessReport> gathered_reports(Communicator& processes) {
+    const ProcessReport own = own_report(&processes);
+    return dist::gather(processes, std::span(&own, 1));
+}
+
 /// Process 0's solver, which has all the others do the same.
 class TeamSolver final : public sim::Solver {
 public:
@@ -202,6 +227,9 @@ void obey(Communicator& processes, const Order& order, sim::Solver& solver) {
             solver.load(reader);
             break;
         }
+        case Task::kReport:
+            gathered_reports(processes);
+            break;
         case Task::kLeave:
         case Task::kCreate:
             break;
@@ -222,6 +250,12 @@ std::unique_ptr<sim::Solver> Team::create(const MakeSolver& make) {
     if (!processes_) return make(nullptr);
     give(*processes_, {Task::kCreate});
     return std::make_unique<TeamSolver>(processes_, dist::together(*processes_, [&] { return make(processes_); }));
+}
+
+std::vector<ProcessReport> Team::report() const {
+    if (!processes_) return {own_report(nullptr)};
+    give(*processes_, {Task::kReport});
+    return gathered_reports(*processes_);
 }
 
 void follow(const Processes& processes, const MakeSolver& make) {
