@@ -20,13 +20,13 @@ constexpr double kLatency = 7e-6;
 // a frame is written; by other processes than 0 while bubbles change hands and neighbor lists are built.
 constexpr double kProgramBytes = 34e6;
 template <int D>
-constexpr double kAlone = D == 2 ? 665.0 : 858.0;
+constexpr double kAlone = D == 2 ? 640.0 : 835.0;
 template <int D>
-constexpr double kShared = D == 2 ? 615.0 : 850.0;
+constexpr double kShared = D == 2 ? 550.0 : 680.0;
 template <int D>
-constexpr double kShowing = D == 2 ? 370.0 : 485.0;  // while there is a frame, beside it
+constexpr double kShowing = D == 2 ? 330.0 : 540.0;  // while there is a frame, beside it
 template <int D>
-constexpr double kGathered = D == 2 ? 385.0 : 425.0;  // the frame of the whole and its text
+constexpr double kGathered = D == 2 ? 380.0 : 405.0;  // the frame of the whole and its text
 constexpr double kCopy = 100.0;
 
 /// Mean of q = R^d over the radii of the start, taken as normal.

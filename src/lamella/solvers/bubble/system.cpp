@@ -126,6 +126,7 @@ void System<D>::rebuild(double least_reach) {
     for (auto& column : position) append(column);
     append(radius);
     append(id);
+    neighbors_ = {};  // the old lists make room for the new ones
     auto search = spatial::find_neighbors<D>(foam.box, pointers<D>(position), radius.data(), id.data(), radius.size(),
                                              skin_, {.count = halo.copies(), .largest_radius = largest});
     neighbors_ = std::move(search.list);
