@@ -5,17 +5,26 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 extern char** environ;  // POSIX has it in no header
 
 namespace lamella::app {
+namespace {
+
+constexpr int kNotStarted = 127;  // as shells have it
+
+}  // namespace
 
 int run_external(const std::vector<std::string>& words,
                  const std::filesystem::path& messages,
@@ -38,6 +47,42 @@ int run_external(const std::vector<std::string>& words,
     while (::waitpid(child, &status, 0) < 0)
         if (errno != EINTR) throw IoError(fmt::format("{}: {}", words[0], std::strerror(errno)));
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+int run_launcher(std::vector<std::string> launcher,
+                 const std::vector<std::string>& arguments,
+                 const std::filesystem::path& messages,
+                 const std::function<int()>& stop_signal) {
+    launcher.push_back(std::filesystem::read_symlink("/proc/self/exe").string());
+    launcher.insert(launcher.end(), arguments.begin(), arguments.end());
+    std::vector<char*> words;
+    for (std::string& word : launcher) words.push_back(word.data());
+    words.push_back(nullptr);
+    const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+    const int out = ::open(messages.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (nothing < 0 || out < 0) throw IoError(fmt::format("{}: {}", messages.string(), std::strerror(errno)));
+    const pid_t parent = ::getpid();
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+        if (::getppid() != parent) ::_exit(kNotStarted);
+        ::dup2(nothing, STDIN_FILENO);
+        ::dup2(nothing, STDOUT_FILENO);
+        ::dup2(out, STDERR_FILENO);
+        ::execvp(words[0], words.data());
+        ::_exit(kNotStarted);
+    }
+    ::close(nothing);
+    ::close(out);
+    if (child < 0) throw IoError(fmt::format("{}: {}", launcher[0], std::strerror(errno)));
+    int status = 0;
+    for (bool told = false; ::waitpid(child, &status, WNOHANG) == 0;) {
+        if (!told && stop_signal() != 0) told = ::kill(child, SIGUSR1) == 0;
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    if (code == kNotStarted) throw IoError(fmt::format("{} cannot be started: task.launcher", launcher[0]));
+    return code;
 }
 
 std::string last_line(const std::filesystem::path& file) {

@@ -23,6 +23,7 @@ void catch_stop_signals() {
     action.sa_flags = SA_RESTART;  // a write in progress goes on
     ::sigaction(SIGINT, &action, nullptr);
     ::sigaction(SIGTERM, &action, nullptr);
+    ::sigaction(SIGUSR1, &action, nullptr);
 }
 
 int stop_signal() { return received; }

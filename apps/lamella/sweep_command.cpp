@@ -13,6 +13,7 @@
 #include "command_line.h"
 #include "commands.h"
 #include "device.h"
+#include "external_program.h"
 #include "output.h"
 #include "progress_display.h"
 #include "signals.h"
@@ -116,6 +117,10 @@ int work_here(const SweepFolder& folder, const std::vector<std::size_t>& tasks, 
     sweep::WorkSettings settings;
     settings.stop_signal = stop_signal;
     settings.device = options.device;
+    settings.launch = [](const std::vector<std::string>& launcher, const std::vector<std::string>& arguments,
+                         const std::filesystem::path& messages) {
+        return run_launcher(launcher, arguments, messages, stop_signal);
+    };
     const bool quiet = options.progress == "none";
     settings.on_task = [&](std::size_t task, TaskState state, const std::string& message) {
         if (state == TaskState::kFailed)
@@ -173,7 +178,10 @@ int run_command(const SweepOptions& options) {
     const SweepFolder folder(options.folder);
     const std::vector<std::size_t> tasks = chosen_tasks(folder, options);
     const int cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
-    const int jobs = options.jobs > 0 ? options.jobs : std::max(cores / folder.options().threads, 1);
+    const sweep::TaskOptions& task = folder.options();
+    if (task.ranks > 1 && options.device != "cpu")
+        throw InputError("runs of several processes (task.ranks) compute on CPUs only; use --device cpu");
+    const int jobs = options.jobs > 0 ? options.jobs : std::max(cores / (task.threads * task.ranks), 1);
     return jobs == 1 || !options.task.empty() ? work_here(folder, tasks, options)
                                               : work_in_pool(folder, tasks, options, jobs);
 }

@@ -90,6 +90,32 @@ class Clusters(ProgramTest):
                 self.assertEqual(json.loads((folder / "run.json").read_text())["processes"], processes)
             self.assertIn(f"processes  {processes}", result.stderr)
             self.assertEqual(result.stderr.count("Done in"), 1)
+            session = json.loads((folder / "run.json").read_text())["sessions"][-1]
+            self.assertEqual(len(session["exchange_seconds"]), processes)
+            self.assertGreater(min(session["exchange_seconds"]), 0.0)
+
+    def test_need_about_the_memory_that_check_says(self):
+        for dimension, count in ((2, 40000), (3, 30000)):
+            values = {"bubble.dimension": dimension, "bubble.count": count, "bubble.gas_fraction": 0.9,
+                      "bubble.start.max_iterations": 5}
+            options = [word for key, value in values.items() for word in ("--set", f"{key}={value}")]
+            numbers = json.loads(lamella("check", self.scene, "--json", *options).stdout)["characteristic_numbers"]
+            said = {name: numbers[name]["value"]
+                    for name in ("memory", "processes", "memory_per_process", "memory_process_0")}
+            processes = min(int(said["processes"]), 4)
+            for number in (1, processes):
+                folder = self.folder / f"memory{dimension}_{number}"
+                self.assert_exit(mpirun(number, "run", self.scene, "--out", folder, "--until", "1e-5", *options), 0)
+                found = json.loads((folder / "run.json").read_text())["sessions"][-1]["peak_memory_mb"]
+                self.assertEqual(len(found), number)
+                if number == 1:
+                    self.assert_within(said["memory"], found[0])
+                elif number == said["processes"]:
+                    self.assert_within(said["memory_process_0"], found[0])
+                    self.assert_within(said["memory_per_process"], max(found[1:]))
+
+    def assert_within(self, said, found, factor=1.3):
+        self.assertTrue(found / factor <= said <= found * factor, f"{said} MB planned, {found} MB found")
 
     def test_continue_each_others_checkpoints(self):
         whole = self.folder / "whole"
@@ -117,6 +143,68 @@ class Clusters(ProgramTest):
         film = mpirun(3, "run", "equilibrium/catenoid-0.4-small", "--out", out)
         self.assert_refused_once(film, "equilibrium", "one process", "3")
         self.assert_refused_once(mpirun(2, "resume", self.folder), "not a run folder")
+        self.assertFalse(out.exists())
+
+
+SWEEP = """
+scene = "foam.toml"
+
+[set]
+time.end = {end}
+
+[axes]
+bubble.gas_fraction = [0.88, 0.92]
+
+[task]
+ranks = {ranks}
+launcher = "{launcher}"
+"""
+
+
+class SweptClusters(ProgramTest):
+    def plan(self, name, ranks, launcher="mpirun --oversubscribe -np {ranks}", scene=FOAM, end=0.1):
+        (self.folder / "foam.toml").write_text(scene)
+        (self.folder / f"{name}.toml").write_text(SWEEP.format(ranks=ranks, launcher=launcher, end=end))
+        out = self.folder / name
+        return lamella("sweep", "plan", self.folder / f"{name}.toml", "--out", out), out
+
+    def test_give_the_table_of_runs_of_one_process(self):
+        tables = []
+        for ranks in (1, 2):
+            planned, out = self.plan(f"sweep{ranks}", ranks)
+            self.assert_exit(planned, 0)
+            self.assertIn(f"--ntasks={ranks}\n", (out / "slurm.sh").read_text())
+            self.assert_exit(lamella("sweep", "run", out, "--jobs", "1"), 0)
+            tables.append(lamella("sweep", "collect", out, "--series", "--out", "-").stdout)
+            for record in out.glob("runs/*/run.json"):
+                self.assertEqual(json.loads(record.read_text())["processes"], ranks)
+        self.assertIn("gas_fraction", tables[0])
+        self.assertEqual(tables[0], tables[1])
+
+    def test_stop_on_a_signal_with_a_checkpoint_and_go_on(self):
+        planned, out = self.plan("stopped", 2, scene=LONG_FOAM, end=0.6)
+        self.assert_exit(planned, 0)
+        worker = subprocess.Popen([PROGRAM, "sweep", "run", out, "--jobs", "1"], stderr=subprocess.DEVNULL)
+        while not any(out.glob("runs/*/frames/*1.vtp")):
+            self.assertIsNone(worker.poll(), "the sweep ended too early")
+            time.sleep(0.01)
+        worker.send_signal(signal.SIGTERM)
+        self.assertEqual(worker.wait(timeout=60), 128 + signal.SIGTERM)
+        states = json.loads(lamella("sweep", "status", out, "--json").stdout)
+        self.assertEqual((states["interrupted"], states["waiting"]), ([0], [1]))
+        self.assertEqual(len(list(out.glob("runs/*/checkpoint.h5"))), 1)
+        self.assert_exit(lamella("sweep", "run", out, "--jobs", "1"), 0)
+        self.assertEqual(len(json.loads(lamella("sweep", "status", out, "--json").stdout)["done"]), 2)
+
+    def test_that_cannot_start_are_told(self):
+        planned, out = self.plan("nowhere", 2, launcher="no-such-mpirun -np {ranks}")
+        self.assert_exit(planned, 0)
+        result = lamella("sweep", "run", out, "--jobs", "1")
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("no-such-mpirun cannot be started", result.stderr)
+        planned, out = self.plan("empty", 2, launcher=" ")
+        self.assert_exit(planned, 2)
+        self.assertIn("task.launcher", planned.stderr)
         self.assertFalse(out.exists())
 
 

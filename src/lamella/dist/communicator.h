@@ -30,10 +30,11 @@ public:
     virtual int size() const = 0;
     bool several() const { return size() > 1; }
 
-    /// Each value becomes its sum over all processes.
-    virtual void sum(std::span<std::int64_t> values) = 0;
-    /// Each value becomes the largest over all processes; one that is not a number counts as infinite.
-    virtual void largest(std::span<double> values) = 0;
+    /// Each of `sums` becomes its sum over all processes, each of `maxima` the largest; one that is not a number counts
+    /// as infinite. Processes wait for each other here: what can be asked together should be.
+    virtual void reduce(std::span<std::int64_t> sums, std::span<double> maxima) = 0;
+    void sum(std::span<std::int64_t> values) { reduce(values, {}); }
+    void largest(std::span<double> values) { reduce({}, values); }
     /// The bytes of process 0 reach all.
     virtual void broadcast(std::span<std::byte> bytes) = 0;
     /// Tells each process one number. @param to_each  one per process   @returns  what each process told this one
@@ -44,6 +45,9 @@ public:
     virtual void begin(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) = 0;
     virtual void end() = 0;
 
+    /// Time that this process has spent in reduce, exchange, begin and end: moving data, and waiting for others [s].
+    virtual double seconds() const { return 0.0; }
+
     /// Ends the other processes, and maybe this one: it met an error that they do not know of. Not collective.
     virtual void abort(int exit_code) = 0;
 };
@@ -53,8 +57,7 @@ class Alone final : public Communicator {
 public:
     int rank() const override { return 0; }
     int size() const override { return 1; }
-    void sum(std::span<std::int64_t>) override {}
-    void largest(std::span<double>) override {}
+    void reduce(std::span<std::int64_t>, std::span<double>) override {}
     void broadcast(std::span<std::byte>) override {}
     std::vector<std::int64_t> exchange(std::span<const std::int64_t> to_each) override {
         return {to_each.begin(), to_each.end()};

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lamella/core/aligned.h"
-#include "lamella/dist/communicator.h"
+#include "lamella/dist/routes.h"
 
 #include <cstdint>
 #include <utility>
@@ -14,24 +14,18 @@ public:
     /// No copies.
     Halo() = default;
     /// @param wanted  for each rank the items here that it gets copies of, in the order in which it will see them
-    Halo(Communicator& processes, std::vector<std::vector<std::uint32_t>> wanted);
+    Halo(Communicator& processes, std::vector<std::vector<std::uint32_t>> wanted)
+        : routes_(processes, std::move(wanted)) {}
 
     /// Copies here. Those of one rank are neighbors, ranks in order.
-    std::size_t copies() const { return copies_; }
+    std::size_t copies() const { return routes_.arriving(); }
     /// Copies of this process's items elsewhere.
-    std::size_t copied() const { return copied_; }
+    std::size_t copied() const { return routes_.leaving(); }
 
     /// The copies' entries of a column of the items here.
     template <class T>
-    std::vector<T> fetch(std::span<const T> column) {
-        std::vector<T> sent(copied_);
-        std::size_t at = 0;
-        for (const Group& group : outgoing_)
-            for (const std::uint32_t i : group.items) sent[at++] = column[i];
-        std::vector<T> received(copies_);
-        begin_messages(std::as_bytes(std::span(sent)), std::as_writable_bytes(std::span(received)), sizeof(T));
-        if (processes_ != nullptr) processes_->end();
-        return received;
+    std::vector<T> fetch(std::span<const T> column) const {
+        return routes_.arrivals(column);
     }
 
     /// The items were stored anew: item i stands at place[i] now, and the copies follow from `first_copy` on.
@@ -43,21 +37,7 @@ public:
     void end();
 
 private:
-    struct Group {
-        int rank;
-        std::vector<std::uint32_t> items;
-    };
-    struct Arrival {
-        int rank;
-        std::size_t items;
-    };
-    void begin_messages(std::span<const std::byte> sent, std::span<std::byte> received, std::size_t item_bytes);
-
-    Communicator* processes_ = nullptr;
-    std::vector<Group> outgoing_;
-    std::vector<Arrival> incoming_;
-    std::size_t copies_ = 0;
-    std::size_t copied_ = 0;
+    Routes routes_;
     std::size_t first_copy_ = 0;
 
     std::vector<Column*> columns_;  ///< between begin() and end()

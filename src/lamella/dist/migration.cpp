@@ -2,39 +2,24 @@
 
 namespace lamella::dist {
 
-Migration::Migration(Communicator& processes, std::span<const int> destination) : processes_(&processes) {
+Migration::Migration(Communicator& processes, std::span<const int> destination) {
     std::vector<std::vector<std::uint32_t>> to(static_cast<std::size_t>(processes.size()));
-    for (std::size_t i = 0; i < destination.size(); ++i) {
-        auto& list = destination[i] == processes.rank() ? staying_ : to[static_cast<std::size_t>(destination[i])];
-        list.push_back(static_cast<std::uint32_t>(i));
+    std::vector<std::uint32_t> gaps;
+    for (std::uint32_t i = 0; i < destination.size(); ++i) {
+        const int rank = destination[i];
+        if (rank == processes.rank()) continue;
+        gaps.push_back(i);
+        if (rank != kGone) to[static_cast<std::size_t>(rank)].push_back(i);
     }
-    std::vector<std::int64_t> counts(to.size());
-    for (std::size_t r = 0; r < to.size(); ++r) {
-        counts[r] = static_cast<std::int64_t>(to[r].size());
-        leaving_ += to[r].size();
-        if (!to[r].empty()) outgoing_.push_back({static_cast<int>(r), std::move(to[r])});
-    }
-    const std::vector<std::int64_t> from = processes.exchange(counts);
-    for (std::size_t r = 0; r < from.size(); ++r) {
-        if (from[r] == 0) continue;
-        incoming_.push_back({static_cast<int>(r), static_cast<std::size_t>(from[r])});
-        arriving_ += incoming_.back().items;
-    }
-}
+    routes_ = Routes(processes, std::move(to));
+    count_ = destination.size() - gaps.size() + routes_.arriving();
 
-void Migration::move(std::span<const std::byte> sent, std::span<std::byte> received, std::size_t item_bytes) const {
-    std::vector<Outgoing> outgoing;
-    for (const Group& group : outgoing_) {
-        outgoing.push_back({group.rank, sent.first(group.items.size() * item_bytes)});
-        sent = sent.subspan(group.items.size() * item_bytes);
-    }
-    std::vector<Incoming> incoming;
-    for (const Arrival& arrival : incoming_) {
-        incoming.push_back({arrival.rank, received.first(arrival.items * item_bytes)});
-        received = received.subspan(arrival.items * item_bytes);
-    }
-    processes_->begin(outgoing, incoming);
-    processes_->end();
+    // Room beyond the items as they were counts as gaps, and of the gaps those below the new count are to be filled.
+    for (std::size_t i = destination.size(); i < count_; ++i) gaps.push_back(static_cast<std::uint32_t>(i));
+    auto gap = gaps.begin();
+    for (std::size_t i = count_; i < destination.size(); ++i)
+        if (destination[i] == processes.rank()) moves_.emplace_back(static_cast<std::uint32_t>(i), *gap++);
+    places_.assign(gap, gap + static_cast<std::ptrdiff_t>(routes_.arriving()));
 }
 
 }  // namespace lamella::dist

@@ -1,60 +1,40 @@
 #pragma once
 
-#include "lamella/dist/communicator.h"
+#include "lamella/dist/routes.h"
 
-#include <cstring>
-#include <type_traits>
+#include <algorithm>
 #include <utility>
 
 namespace lamella::dist {
 
-/// Items on their way to other processes: those that stay keep their order and come first, then those that arrive, by
-/// the rank they come from. Made once for a set of items, then applied to each of their columns.
+/// Items on their way to other processes. Those that stay keep their places where they can: what arrives, and the last
+/// ones, fill the gaps. Made once for a set of items, then applied to each of their columns.
 class Migration {
 public:
-    /// @param destination  the rank that each item goes to
+    static constexpr int kGone = -1;  ///< the destination of items that end here
+
+    /// Collective. @param destination  the rank that each item goes to, or kGone
     Migration(Communicator& processes, std::span<const int> destination);
 
     /// Items here afterwards.
-    std::size_t count() const { return staying_.size() + arriving_; }
-    /// Items that leave this process.
-    std::size_t leaving() const { return leaving_; }
+    std::size_t count() const { return count_; }
 
-    /// The column of the items as they were becomes that of the items now here.
+    /// The column of the items as they were (maybe with other entries behind them) becomes that of the items now here.
     template <class C>
     void operator()(C& column) const {
         using T = typename C::value_type;
-        static_assert(std::is_trivially_copyable_v<T>);
-        std::vector<std::byte> sent(leaving_ * sizeof(T));
-        std::size_t at = 0;
-        for (const Group& group : outgoing_)
-            for (const std::uint32_t i : group.items) {
-                std::memcpy(&sent[at], &column[i], sizeof(T));
-                at += sizeof(T);
-            }
-        C moved(count());
-        for (std::size_t n = 0; n < staying_.size(); ++n) moved[n] = column[staying_[n]];
-        move(sent, std::as_writable_bytes(std::span(moved.data() + staying_.size(), arriving_)), sizeof(T));
-        column.swap(moved);
+        const std::vector<T> arrivals = routes_.arrivals(std::span<const T>(column));
+        if (count_ > column.size()) column.resize(count_);
+        for (const auto& [from, to] : moves_) column[to] = column[from];
+        for (std::size_t n = 0; n < arrivals.size(); ++n) column[places_[n]] = arrivals[n];
+        column.resize(count_);
     }
 
 private:
-    struct Group {
-        int rank;
-        std::vector<std::uint32_t> items;
-    };
-    struct Arrival {
-        int rank;
-        std::size_t items;
-    };
-    void move(std::span<const std::byte> sent, std::span<std::byte> received, std::size_t item_bytes) const;
-
-    Communicator* processes_;
-    std::vector<std::uint32_t> staying_;
-    std::vector<Group> outgoing_;
-    std::vector<Arrival> incoming_;
-    std::size_t leaving_ = 0;
-    std::size_t arriving_ = 0;
+    Routes routes_;
+    std::size_t count_ = 0;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> moves_;  ///< of staying items: from, to
+    std::vector<std::uint32_t> places_;                           ///< of the arrivals
 };
 
 }  // namespace lamella::dist

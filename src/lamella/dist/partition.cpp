@@ -53,12 +53,15 @@ Partition<D>::Partition(Communicator& processes,
     std::vector<std::int32_t> open{0};
     while (true) {
         std::erase_if(open, [&](std::int32_t n) { return nodes_[static_cast<std::size_t>(n)].parts == 1; });
-        if (open.empty()) return;
+        if (open.empty()) break;
         const std::size_t first_new = nodes_.size();
         cut_level(processes, position, node_of_point, open);
         open.clear();
         for (std::size_t n = first_new; n < nodes_.size(); ++n) open.push_back(static_cast<std::int32_t>(n));
     }
+    leaf_.resize(static_cast<std::size_t>(parts));
+    for (std::size_t n = 0; n < nodes_.size(); ++n)
+        if (nodes_[n].axis < 0) leaf_[static_cast<std::size_t>(nodes_[n].first)] = static_cast<std::int32_t>(n);
 }
 
 /// Cuts every node in `open` once and moves the points into the halves.

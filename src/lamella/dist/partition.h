@@ -50,6 +50,21 @@ public:
         visit_near(0, center, limit * limit, visit);
     }
 
+    /// Where for_each_near need not be asked: whether all places within `reach` of `center` are the part's own.
+    bool holds_all_near(int part, Vec<D> center, double reach) const {
+        const Node& node = nodes_[static_cast<std::size_t>(leaf_[static_cast<std::size_t>(part)])];
+        center = in_box(center);
+        const double limit = reach * (1.0 + 1e-9);
+        for (std::size_t k = 0; k < D; ++k) {
+            const bool whole = node.low[k] <= 0.0 && node.high[k] >= box_.lengths[k];
+            const bool ends_low = !whole && (box_.periodic[k] || node.low[k] > 0.0);
+            const bool ends_high = !whole && (box_.periodic[k] || node.high[k] < box_.lengths[k]);
+            if (ends_low && center[k] - node.low[k] <= limit) return false;
+            if (ends_high && node.high[k] - center[k] <= limit) return false;
+        }
+        return true;
+    }
+
 private:
     struct Node {
         Vec<D> low, high;
@@ -106,6 +121,7 @@ private:
     spatial::PeriodicBox<D> box_;
     int parts_;
     std::vector<Node> nodes_;
+    std::vector<std::int32_t> leaf_;  ///< node of each part
 };
 
 }  // namespace lamella::dist

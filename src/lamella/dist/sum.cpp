@@ -4,7 +4,7 @@
 
 namespace lamella::dist {
 
-void sum(Communicator& processes, std::span<FixedSum> sums) {
+void reduce(Communicator& processes, std::span<FixedSum> sums, std::span<double> maxima) {
     if (!processes.several()) return;
     std::vector<std::int64_t> words;
     words.reserve(2 * sums.size());
@@ -13,7 +13,7 @@ void sum(Communicator& processes, std::span<FixedSum> sums) {
         words.push_back(sum.high());
         words.push_back(sum.low());
     }
-    processes.sum(words);
+    processes.reduce(words, maxima);
     for (std::size_t k = 0; k < sums.size(); ++k) {
         sums[k].high() = words[2 * k];
         sums[k].low() = words[2 * k + 1];

@@ -10,7 +10,9 @@
 namespace lamella::dist {
 
 /// Each sum becomes the one over all processes: integers, so that it does not show how many there are.
-void sum(Communicator& processes, std::span<FixedSum> sums);
+/// Each of `maxima` becomes the largest over all processes, on the same way.
+void reduce(Communicator& processes, std::span<FixedSum> sums, std::span<double> maxima);
+inline void sum(Communicator& processes, std::span<FixedSum> sums) { reduce(processes, sums, {}); }
 std::int64_t sum(Communicator& processes, std::int64_t value);
 double largest(Communicator& processes, double value);
 

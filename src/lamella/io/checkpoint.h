@@ -12,9 +12,9 @@ namespace lamella::io {
 /// temporary name in the same folder and syncs it, keeps the file present so far as `<path>.previous`, then renames
 /// the new one into place.
 ///
-/// HDF5 builds the file in memory and lamella writes its bytes: a full disk is then noticed by the write that failed,
-/// with the system's own reason, whereas HDF5 hides the reason and is left in a state that may crash when it
-/// ends. It costs the size of the state in memory (about 1.5 GB for 10^7 bubbles) from the first write() to commit().
+/// HDF5 writes through lamella, which notices the write that failed, with the system's own reason (a full disk, say):
+/// HDF5 hides the reason and is left in a state that may crash when it ends. It costs a few MiB of memory, whatever
+/// the size of the state.
 ///
 /// Unless HDF5 was built thread-safe, as Linux distributions do, use one checkpoint at a time in a process.
 class CheckpointWriter : public sim::StateWriter {
@@ -29,6 +29,10 @@ public:
     void write(std::string_view name, std::span<const double> values) override;
     void write(std::string_view name, std::span<const std::int64_t> values) override;
     void write(std::string_view name, std::span<const std::int32_t> values) override;
+    /// The parts of a column one after another, and nothing else in between; the file does not show how it was cut.
+    void write_part(std::string_view name, std::span<const double> values, sim::Part part) override;
+    void write_part(std::string_view name, std::span<const std::int64_t> values, sim::Part part) override;
+    void write_part(std::string_view name, std::span<const std::int32_t> values, sim::Part part) override;
 
     /// Makes the checkpoint the current one; to be called once, last.
     /// @throws IoError  disk full and the like; the old one is untouched
@@ -54,6 +58,15 @@ public:
     void read(std::string_view name, std::size_t count, std::vector<double>& values) override;
     void read(std::string_view name, std::size_t count, std::vector<std::int64_t>& values) override;
     void read(std::string_view name, std::size_t count, std::vector<std::int32_t>& values) override;
+    void read_stretch(std::string_view name, sim::Part part, std::size_t count, std::vector<double>& values) override;
+    void read_stretch(std::string_view name,
+                      sim::Part part,
+                      std::size_t count,
+                      std::vector<std::int64_t>& values) override;
+    void read_stretch(std::string_view name,
+                      sim::Part part,
+                      std::size_t count,
+                      std::vector<std::int32_t>& values) override;
 
 private:
     struct Impl;

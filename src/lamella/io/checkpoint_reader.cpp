@@ -23,7 +23,7 @@ struct CheckpointReader::Impl {
     void open();
     std::string text_attribute(const char* name) const;
     template <class Value>
-    void read(std::string_view name, std::size_t count, std::vector<Value>& values) const;
+    void read(std::string_view name, sim::Part part, std::size_t count, std::vector<Value>& values) const;
     template <class Value>
     void check_dataset(const Hdf5Handle& dataset, std::string_view name, std::size_t count) const;
 };
@@ -81,15 +81,25 @@ void CheckpointReader::Impl::check_dataset(const Hdf5Handle& dataset, std::strin
 }
 
 template <class Value>
-void CheckpointReader::Impl::read(std::string_view name, std::size_t count, std::vector<Value>& values) const {
+void CheckpointReader::Impl::read(std::string_view name,
+                                  sim::Part part,
+                                  std::size_t count,
+                                  std::vector<Value>& values) const {
     const QuietHdf5 quiet;
     const std::string terminated(name);
     const Hdf5Handle dataset(H5Dopen2(file.get(), terminated.c_str(), H5P_DEFAULT), H5Dclose);
     if (!dataset) throw error(fmt::format("has no entry \"{}\"", name));
-    check_dataset<Value>(dataset, name, count);
+    check_dataset<Value>(dataset, name, static_cast<std::size_t>(part.total));
     values.resize(count);
     if (count == 0) return;
-    if (H5Dread(dataset.get(), Hdf5Type<Value>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+    const auto first = static_cast<hsize_t>(part.first);
+    const hsize_t wanted = count;
+    const Hdf5Handle in_file(H5Dget_space(dataset.get()), H5Sclose);
+    const Hdf5Handle in_memory(H5Screate_simple(1, &wanted, nullptr), H5Sclose);
+    const bool selected = in_file && in_memory &&
+                          H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, &first, nullptr, &wanted, nullptr) >= 0;
+    if (!selected || H5Dread(dataset.get(), Hdf5Type<Value>::memory(), in_memory.get(), in_file.get(), H5P_DEFAULT,
+                             values.data()) < 0) {
         throw error(fmt::format("entry \"{}\" cannot be read: damaged, or the disk failed", name));
     }
 }
@@ -114,13 +124,31 @@ CheckpointReader::~CheckpointReader() {
 }
 
 void CheckpointReader::read(std::string_view name, std::size_t count, std::vector<double>& values) {
-    impl_->read(name, count, values);
+    impl_->read(name, {0, static_cast<std::int64_t>(count)}, count, values);
 }
 void CheckpointReader::read(std::string_view name, std::size_t count, std::vector<std::int64_t>& values) {
-    impl_->read(name, count, values);
+    impl_->read(name, {0, static_cast<std::int64_t>(count)}, count, values);
 }
 void CheckpointReader::read(std::string_view name, std::size_t count, std::vector<std::int32_t>& values) {
-    impl_->read(name, count, values);
+    impl_->read(name, {0, static_cast<std::int64_t>(count)}, count, values);
+}
+void CheckpointReader::read_stretch(std::string_view name,
+                                    sim::Part part,
+                                    std::size_t count,
+                                    std::vector<double>& values) {
+    impl_->read(name, part, count, values);
+}
+void CheckpointReader::read_stretch(std::string_view name,
+                                    sim::Part part,
+                                    std::size_t count,
+                                    std::vector<std::int64_t>& values) {
+    impl_->read(name, part, count, values);
+}
+void CheckpointReader::read_stretch(std::string_view name,
+                                    sim::Part part,
+                                    std::size_t count,
+                                    std::vector<std::int32_t>& values) {
+    impl_->read(name, part, count, values);
 }
 
 }  // namespace lamella::io

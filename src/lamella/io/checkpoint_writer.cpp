@@ -2,13 +2,15 @@
 #include "lamella/io/checkpoint.h"
 #include "lamella/io/detail/checkpoint_seal.h"
 #include "lamella/io/detail/hdf5.h"
+#include "lamella/io/detail/hdf5_output.h"
 #include "lamella/io/detail/output_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
+#include <optional>
+#include <vector>
 
 namespace lamella::io {
 namespace {
@@ -17,44 +19,7 @@ using detail::Hdf5Handle;
 using detail::Hdf5Type;
 using detail::QuietHdf5;
 
-constexpr std::size_t kImageIncrement = 4096;  ///< bytes; the file is a multiple. Growing costs no copy (mremap)
-constexpr hsize_t kChunk = hsize_t{1} << 17;   ///< values; 1 MiB of doubles, what HDF5's cache holds of a dataset
-
-/// The file while HDF5 builds it. HDF5's "core" driver asks these functions for memory; the one thing they do
-/// differently from malloc is to keep the buffer when HDF5 closes the file, which saves a copy of it.
-struct Image {
-    char* bytes = nullptr;
-    std::size_t size = 0;
-
-    Image() = default;
-    Image(const Image&) = delete;
-    Image& operator=(const Image&) = delete;
-    ~Image() { std::free(bytes); }
-
-    /// There is one buffer at any time, so HDF5's own pointer to it need not be looked at.
-    void* grow(std::size_t wanted) {
-        void* const grown = std::realloc(bytes, wanted);
-        if (grown == nullptr) return nullptr;
-        bytes = static_cast<char*>(grown);
-        size = wanted;
-        return grown;
-    }
-
-    static void* allocate(std::size_t size, H5FD_file_image_op_t, void* image) {
-        return static_cast<Image*>(image)->grow(size);
-    }
-    static void* copy(void* to, const void* from, std::size_t size, H5FD_file_image_op_t, void*) {
-        return std::memcpy(to, from, size);
-    }
-    static void* resize(void*, std::size_t size, H5FD_file_image_op_t, void* image) {
-        return static_cast<Image*>(image)->grow(size);
-    }
-    static herr_t release(void*, H5FD_file_image_op_t, void*) { return 0; }  // the buffer stays ours
-    static void* share(void* image) { return image; }
-    static herr_t unshare(void*) { return 0; }
-
-    H5FD_file_image_callbacks_t callbacks() { return {allocate, copy, resize, release, share, unshare, this}; }
-};
+constexpr hsize_t kChunk = hsize_t{1} << 17;  ///< values; 1 MiB of doubles, what HDF5's cache holds of a dataset
 
 /// "foam/position": words separated by single slashes, none of them "." or "..".
 bool is_valid_name(std::string_view name) {
@@ -69,42 +34,56 @@ bool is_valid_name(std::string_view name) {
 
 }  // namespace
 
+/// A column on its way into the file. HDF5 gets it chunk by chunk, however it comes, so that the file has the same
+/// bytes.
+struct Column {
+    std::string name;
+    Hdf5Handle dataset;
+    hsize_t total = 0;
+    hsize_t written = 0;             ///< values in the file
+    std::vector<std::byte> waiting;  ///< what came of the next chunk
+
+    hsize_t received(std::size_t value_size) const { return written + waiting.size() / value_size; }
+};
+
 struct CheckpointWriter::Impl {
     std::filesystem::path path;
-    Image image;
-    detail::AtomicFile output;
+    detail::AtomicFile file_on_disk;
+    detail::Hdf5Output output;
     Hdf5Handle link_options;
-    Hdf5Handle file;  // after the image: closed before the image is freed
+    Hdf5Handle file;  // after the output: closed before that ends
+    std::optional<Column> column;
 
-    explicit Impl(std::filesystem::path p) : path(std::move(p)), output(path) {}
+    explicit Impl(std::filesystem::path p)
+        : path(std::move(p)), file_on_disk(path), output(file_on_disk.descriptor()) {}
 
-    /// What HDF5 can still refuse when no disk is involved is memory.
+    /// What HDF5 itself can refuse is memory.
     void check(bool success) const {
-        if (!success) {
-            throw IoError(
-                fmt::format("cannot write {}: HDF5 failed while it built the file; out of memory?", path.string()));
-        }
+        if (output.error() != 0) detail::throw_io_error("write", path, output.error());
+        if (!success) throw IoError(fmt::format("cannot write {}: HDF5 failed; out of memory?", path.string()));
     }
     void check(const Hdf5Handle& handle) const { check(static_cast<bool>(handle)); }
 
-    void create_image();
+    void create_file();
     void write_attribute(const char* name, const std::string& text);
     void write_attribute(const char* name, std::int64_t value);
     Hdf5Handle dataset_options(hsize_t count) const;
     template <class Value>
-    void write(std::string_view name, std::span<const Value> values);
+    Column open_column(std::string_view name, hsize_t total) const;
+    template <class Value>
+    void put(Column& to, std::span<const Value> values) const;
+    template <class Value>
+    void append(Column& to, std::span<const Value> values) const;
+    template <class Value>
+    void write(std::string_view name, std::span<const Value> values, sim::Part part);
 };
 
-void CheckpointWriter::Impl::create_image() {
+void CheckpointWriter::Impl::create_file() {
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    check(H5Pset_fapl_core(access.get(), kImageIncrement, false) >= 0);
-    H5FD_file_image_callbacks_t callbacks = image.callbacks();
-    check(H5Pset_file_image_callbacks(access.get(), &callbacks) >= 0);
+    check(output.set_driver(access));
     const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     check(H5Pset_userblock(creation.get(), detail::kSealSize) >= 0);
-    // HDF5 would first read a file that has this name. No file can be below a file.
-    const std::filesystem::path name = path / "image";
-    file = Hdf5Handle(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
+    file = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
     check(file);
     link_options = Hdf5Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     check(H5Pset_create_intermediate_group(link_options.get(), 1) >= 0);
@@ -138,29 +117,72 @@ Hdf5Handle CheckpointWriter::Impl::dataset_options(hsize_t count) const {
 }
 
 template <class Value>
-void CheckpointWriter::Impl::write(std::string_view name, std::span<const Value> values) {
+Column CheckpointWriter::Impl::open_column(std::string_view name, hsize_t total) const {
     if (!is_valid_name(name)) throw InputError(fmt::format("\"{}\" cannot be the name of a state entry", name));
-    const QuietHdf5 quiet;
-    const std::string terminated(name);
-    const hsize_t count = values.size();
-    const Hdf5Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    Column opened{.name = std::string(name), .dataset = {}, .total = total, .waiting = {}};
+    const Hdf5Handle space(H5Screate_simple(1, &total, nullptr), H5Sclose);
     check(space);
-    const Hdf5Handle options = dataset_options(count);
-    const Hdf5Handle dataset(H5Dcreate2(file.get(), terminated.c_str(), Hdf5Type<Value>::file(), space.get(),
-                                        link_options.get(), options.get(), H5P_DEFAULT),
-                             H5Dclose);
-    if (!dataset && H5Lexists(file.get(), terminated.c_str(), H5P_DEFAULT) > 0) {
+    const Hdf5Handle options = dataset_options(total);
+    opened.dataset = Hdf5Handle(H5Dcreate2(file.get(), opened.name.c_str(), Hdf5Type<Value>::file(), space.get(),
+                                           link_options.get(), options.get(), H5P_DEFAULT),
+                                H5Dclose);
+    if (!opened.dataset && H5Lexists(file.get(), opened.name.c_str(), H5P_DEFAULT) > 0)
         throw InputError(fmt::format("the state entry \"{}\" is written twice", name));
+    check(opened.dataset);
+    return opened;
+}
+
+/// The next values of a column: a chunk, or the last of them.
+template <class Value>
+void CheckpointWriter::Impl::put(Column& to, std::span<const Value> values) const {
+    const hsize_t count = values.size();
+    const Hdf5Handle in_file(H5Dget_space(to.dataset.get()), H5Sclose);
+    const Hdf5Handle in_memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    check(in_file && in_memory &&
+          H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, &to.written, nullptr, &count, nullptr) >= 0 &&
+          H5Dwrite(to.dataset.get(), Hdf5Type<Value>::memory(), in_memory.get(), in_file.get(), H5P_DEFAULT,
+                   values.data()) >= 0);
+    to.written += count;
+}
+
+template <class Value>
+void CheckpointWriter::Impl::append(Column& to, std::span<const Value> values) const {
+    while (!values.empty()) {
+        const auto next = static_cast<std::size_t>(std::min(kChunk, to.total - to.written));
+        if (to.waiting.empty() && values.size() >= next) {
+            put(to, values.first(next));
+            values = values.subspan(next);
+            continue;
+        }
+        const std::size_t taken = std::min(values.size(), next - to.waiting.size() / sizeof(Value));
+        const auto bytes = std::as_bytes(values.first(taken));
+        to.waiting.insert(to.waiting.end(), bytes.begin(), bytes.end());
+        values = values.subspan(taken);
+        if (to.waiting.size() < next * sizeof(Value)) continue;
+        std::vector<Value> chunk(next);
+        std::memcpy(chunk.data(), to.waiting.data(), to.waiting.size());
+        put(to, std::span<const Value>(chunk));
+        to.waiting.clear();
     }
-    check(dataset);
-    if (count == 0) return;
-    check(H5Dwrite(dataset.get(), Hdf5Type<Value>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+}
+
+template <class Value>
+void CheckpointWriter::Impl::write(std::string_view name, std::span<const Value> values, sim::Part part) {
+    const QuietHdf5 quiet;
+    if (part.first == 0 && !column) column = open_column<Value>(name, static_cast<hsize_t>(part.total));
+    LAMELLA_ASSERT(column && column->name == name && static_cast<hsize_t>(part.total) == column->total &&
+                   static_cast<hsize_t>(part.first) == column->received(sizeof(Value)) &&
+                   values.size() <= column->total - column->received(sizeof(Value)));
+    append(*column, values);
+    if (column->written < column->total) return;
+    check(column->dataset.reset());
+    column.reset();
 }
 
 CheckpointWriter::CheckpointWriter(std::filesystem::path path, const std::string& kind)
     : impl_(std::make_unique<Impl>(std::move(path))) {
     const QuietHdf5 quiet;
-    impl_->create_image();
+    impl_->create_file();
     impl_->write_attribute("format", detail::kCheckpointFormat);
     impl_->write_attribute("version", detail::kCheckpointVersion);
     impl_->write_attribute("kind", kind);
@@ -171,22 +193,40 @@ CheckpointWriter::~CheckpointWriter() {
     impl_.reset();
 }
 
-void CheckpointWriter::write(std::string_view name, std::span<const double> values) { impl_->write(name, values); }
+namespace {
+
+sim::Part all_of(std::size_t count) { return {0, static_cast<std::int64_t>(count)}; }
+
+}  // namespace
+
+void CheckpointWriter::write(std::string_view name, std::span<const double> values) {
+    impl_->write(name, values, all_of(values.size()));
+}
 void CheckpointWriter::write(std::string_view name, std::span<const std::int64_t> values) {
-    impl_->write(name, values);
+    impl_->write(name, values, all_of(values.size()));
 }
 void CheckpointWriter::write(std::string_view name, std::span<const std::int32_t> values) {
-    impl_->write(name, values);
+    impl_->write(name, values, all_of(values.size()));
+}
+void CheckpointWriter::write_part(std::string_view name, std::span<const double> values, sim::Part part) {
+    impl_->write(name, values, part);
+}
+void CheckpointWriter::write_part(std::string_view name, std::span<const std::int64_t> values, sim::Part part) {
+    impl_->write(name, values, part);
+}
+void CheckpointWriter::write_part(std::string_view name, std::span<const std::int32_t> values, sim::Part part) {
+    impl_->write(name, values, part);
 }
 
 void CheckpointWriter::commit() {
     const QuietHdf5 quiet;
+    LAMELLA_ASSERT(!impl_->column);
     impl_->check(impl_->file.reset());
-    const std::string_view image(impl_->image.bytes, impl_->image.size);
-    const std::string_view hdf5_part = image.substr(detail::kSealSize);
-    impl_->output.write(detail::checkpoint_seal(hdf5_part));
-    impl_->output.write(hdf5_part);
-    impl_->output.commit(detail::OldFile::kKeepAsPrevious);
+    const detail::FileDescriptor& disk = impl_->file_on_disk.descriptor();
+    const std::string seal = detail::checkpoint_seal(disk, impl_->output.size(), impl_->path);
+    if (const int error = detail::write_at(disk, 0, seal); error != 0)
+        detail::throw_io_error("write", impl_->path, error);
+    impl_->file_on_disk.commit(detail::OldFile::kKeepAsPrevious);
 }
 
 }  // namespace lamella::io

@@ -62,7 +62,8 @@ public:
     }
 
     const std::string& xml() const { return xml_; }
-    const std::string& data() const { return data_; }
+    /// Array by array: one text that grows would need twice the room.
+    const std::vector<std::string>& data() const { return data_; }
 
 private:
     void open_array(const char* element, const ArrayTag& tag, const char* type) {
@@ -70,15 +71,18 @@ private:
                             xml_escaped(tag.name), tag.components, tag.attributes);
     }
     void close_array(const char* element, const std::string& unit, std::string_view bytes) {
-        xml_ += fmt::format(" format=\"appended\" offset=\"{}\"", data_.size());
-        detail::append_vtk_array(data_, bytes);
+        xml_ += fmt::format(" format=\"appended\" offset=\"{}\"", data_size_);
+        detail::append_vtk_array(data_.emplace_back(), bytes);
+        data_.back().shrink_to_fit();
+        data_size_ += data_.back().size();
         if (unit.empty()) return line("/>");
         line(fmt::format("><InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{}</InformationKey></{}>",
                          xml_escaped(unit), element));
     }
 
     std::string xml_;
-    std::string data_;
+    std::vector<std::string> data_;
+    std::size_t data_size_ = 0;
 };
 
 std::string tuples(std::size_t count) { return fmt::format(" NumberOfTuples=\"{}\"", count); }
@@ -229,7 +233,7 @@ void write_vtp(const std::filesystem::path& path, const sim::Frame& frame) {
     detail::AtomicFile file(path);
     file.write(out.xml());
     file.write("_");
-    file.write(out.data());
+    for (const std::string& array : out.data()) file.write(array);
     file.write("\n</AppendedData>\n</VTKFile>\n");
     file.commit();
 }

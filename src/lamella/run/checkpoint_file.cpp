@@ -19,6 +19,15 @@ public:
     void write(std::string_view name, std::span<const std::int32_t> values) override {
         out_.write(inside(name), values);
     }
+    void write_part(std::string_view name, std::span<const double> values, sim::Part part) override {
+        out_.write_part(inside(name), values, part);
+    }
+    void write_part(std::string_view name, std::span<const std::int64_t> values, sim::Part part) override {
+        out_.write_part(inside(name), values, part);
+    }
+    void write_part(std::string_view name, std::span<const std::int32_t> values, sim::Part part) override {
+        out_.write_part(inside(name), values, part);
+    }
 
 private:
     static std::string inside(std::string_view name) { return kSolverGroup + std::string(name); }
@@ -36,6 +45,15 @@ public:
     }
     void read(std::string_view name, std::size_t count, std::vector<std::int32_t>& values) override {
         in_.read(inside(name), count, values);
+    }
+    void read_stretch(std::string_view name, sim::Part part, std::size_t count, std::vector<double>& v) override {
+        in_.read_stretch(inside(name), part, count, v);
+    }
+    void read_stretch(std::string_view name, sim::Part part, std::size_t count, std::vector<std::int64_t>& v) override {
+        in_.read_stretch(inside(name), part, count, v);
+    }
+    void read_stretch(std::string_view name, sim::Part part, std::size_t count, std::vector<std::int32_t>& v) override {
+        in_.read_stretch(inside(name), part, count, v);
     }
 
 private:

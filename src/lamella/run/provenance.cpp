@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <ctime>
 
 namespace lamella::run {
@@ -47,6 +48,11 @@ ordered_json stage_seconds(const StageTimes& times, double StageTimes::Seconds::
 /// Adds the numbers of one object to those of another, key by key.
 void add_numbers(ordered_json& sum, const ordered_json& part) {
     for (const auto& [key, value] : part.items()) sum[key] = sum.value(key, 0.0) + value.get<double>();
+}
+
+std::vector<double> in_megabytes(std::vector<double> bytes) {
+    for (double& value : bytes) value = std::round(value * 1e-5) * 0.1;
+    return bytes;
 }
 
 }  // namespace
@@ -88,7 +94,9 @@ struct Provenance::Impl {
                 {"steps", record.steps_taken},
                 {"evaluations", record.evaluations},
                 {"wall_seconds", stage_seconds(record.times, &StageTimes::Seconds::wall)},
-                {"cpu_seconds", stage_seconds(record.times, &StageTimes::Seconds::cpu)}};
+                {"cpu_seconds", stage_seconds(record.times, &StageTimes::Seconds::cpu)},
+                {"peak_memory_mb", in_megabytes(record.peak_memory)},
+                {"exchange_seconds", record.exchange_seconds}};
     }
 
     void take_over_sessions();
@@ -146,7 +154,8 @@ void Provenance::write(const RunRecord& record) {
     }
 
     ordered_json file{{"program", "lamella"}};
-    for (const char* key : {"version", "commit", "build", "host", "processes", "threads", "device"}) file[key] = last.at(key);
+    for (const char* key : {"version", "commit", "build", "host", "processes", "threads", "device"})
+        file[key] = last.at(key);
     file["title"] = impl_->title;
     file["solver"] = impl_->solver;
     file["seed"] = impl_->seed;

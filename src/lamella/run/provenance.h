@@ -55,6 +55,8 @@ struct RunRecord {
     std::int64_t steps_taken = 0;  ///< by this process
     std::int64_t evaluations = 0;  ///< by this process
     StageTimes times;
+    std::vector<double> peak_memory;       ///< of each process, once it has stopped [bytes]
+    std::vector<double> exchange_seconds;  ///< likewise: time with messages and sums, waiting included
     std::vector<std::string> notes;
 };
 

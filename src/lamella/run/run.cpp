@@ -81,7 +81,7 @@ RunResult run_scene(const scene::Scene& scene,
         folder.discard_if_empty();
         throw;
     }
-    return Loop(folder, scene, schedule, settings, std::move(solver)).run();
+    return Loop(team, folder, scene, schedule, settings, std::move(solver)).run();
 }
 
 RunResult resume_run(const std::filesystem::path& path,
@@ -108,7 +108,7 @@ RunResult resume_run(const std::filesystem::path& path,
         throw InputError(fmt::format("{} is at time {:.6g} already, beyond {:.6g}", path.string(), from.solver->time(),
                                      *settings.until));
 
-    Loop loop(folder, scene, schedule, settings, std::move(from.solver));
+    Loop loop(team, folder, scene, schedule, settings, std::move(from.solver));
     if (!from.note.empty()) loop.note(from.note);
     if (from.state) loop.take_up(std::move(*from.state));
     return loop.run();

@@ -8,7 +8,7 @@
 
 namespace lamella::sim {
 
-/// A stretch of a column that several processes hold together, ranks in order.
+/// Where a stretch of a column lies in the whole: what one of several processes holds, or what comes next.
 struct Part {
     std::int64_t first = 0;
     std::int64_t total = 0;
@@ -22,7 +22,8 @@ public:
     virtual void write(std::string_view name, std::span<const std::int64_t> values) = 0;
     virtual void write(std::string_view name, std::span<const std::int32_t> values) = 0;
 
-    /// Writes a column of which each process holds a part; collective. One process holds all of it.
+    /// Writes a column in parts. To a solver's share of several processes this is collective: each holds a part, ranks
+    /// in order, and one process holds all of it. A file gets the parts one after another.
     virtual void write_part(std::string_view name, std::span<const double> values, Part) { write(name, values); }
     virtual void write_part(std::string_view name, std::span<const std::int64_t> values, Part) { write(name, values); }
     virtual void write_part(std::string_view name, std::span<const std::int32_t> values, Part) { write(name, values); }
@@ -52,6 +53,17 @@ public:
         read(name, total, v);
     }
 
+    /// Reads `count` values from `part.first` on of a column of `part.total`.
+    virtual void read_stretch(std::string_view name, Part part, std::size_t count, std::vector<double>& values) {
+        cut(name, part, count, values);
+    }
+    virtual void read_stretch(std::string_view name, Part part, std::size_t count, std::vector<std::int64_t>& values) {
+        cut(name, part, count, values);
+    }
+    virtual void read_stretch(std::string_view name, Part part, std::size_t count, std::vector<std::int32_t>& values) {
+        cut(name, part, count, values);
+    }
+
     double read_double(std::string_view name) {
         std::vector<double> value;
         read(name, 1, value);
@@ -61,6 +73,15 @@ public:
         std::vector<std::int64_t> value;
         read(name, 1, value);
         return value[0];
+    }
+
+private:
+    template <class T>
+    void cut(std::string_view name, Part part, std::size_t count, std::vector<T>& values) {
+        std::vector<T> all;
+        read(name, static_cast<std::size_t>(part.total), all);
+        const auto first = all.begin() + static_cast<std::ptrdiff_t>(part.first);
+        values.assign(first, first + static_cast<std::ptrdiff_t>(count));
     }
 };
 

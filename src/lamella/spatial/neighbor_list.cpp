@@ -1,12 +1,12 @@
 #include "lamella/spatial/neighbor_list.h"
 
+#include "lamella/core/parallel.h"
+#include "lamella/spatial/cell_grid.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
-
-#include "lamella/core/parallel.h"
-#include "lamella/spatial/cell_grid.h"
 
 namespace lamella::spatial {
 namespace {
@@ -97,7 +97,8 @@ private:
 template <int D>
 struct BlockLists {
     std::vector<std::uint32_t> length;
-    std::vector<Entry<D>> entries;
+    std::vector<std::uint32_t> index;               ///< of the entries, list after list
+    std::vector<std::array<std::int8_t, D>> image;  ///< likewise, where there are images
 };
 
 /// One axis of the part of a box that holds the balls of one process. Where it is shorter than the box, it has ends
@@ -227,12 +228,13 @@ void fill(const std::vector<BlockLists<D>>& blocks,
         std::fill(list.index.begin() + static_cast<std::ptrdiff_t>(list.group_start[begin]),
                   list.index.begin() + static_cast<std::ptrdiff_t>(list.group_start[end]), nobody);
         for (std::size_t i = begin * kLanes; i < std::min(count, end * kLanes); ++i) {
-            const Entry<D>* entry = blocks[order[i] / kBlock].entries.data() + first[order[i]];
+            const BlockLists<D>& lists = blocks[order[i] / kBlock];
+            std::size_t entry = first[order[i]];
             std::size_t at = list.group_start[i / kLanes] + i % kLanes;
             for (std::uint32_t n = length_of(i); n-- > 0; ++entry, at += kLanes) {
-                list.index[at] = place[entry->index];
+                list.index[at] = place[lists.index[entry]];
                 if (!images) continue;
-                for (std::size_t k = 0; k < D; ++k) list.image[k][at] = entry->image[k];
+                for (std::size_t k = 0; k < D; ++k) list.image[k][at] = lists.image[entry][k];
             }
         }
     });
@@ -308,16 +310,20 @@ NeighborSearch<D> find_neighbors(const PeriodicBox<D>& box,
     parallel_blocks(owned, kBlock, [&](std::size_t begin, std::size_t end) {
         BlockLists<D>& lists = blocks[begin / kBlock];
         lists.length.resize(end - begin);
-        lists.entries.reserve((end - begin) * (D == 2 ? 7 : 14));
+        lists.index.reserve((end - begin) * (D == 2 ? 7 : 14));
+        std::vector<Entry<D>> entries;  // of one ball
         for (std::size_t s = begin; s < end; ++s) {
-            const std::size_t before = lists.entries.size();
             const std::size_t i = subjects[s];
+            entries.clear();
             search.visit(i, balls.radius[i] + largest + skin, [&](std::size_t j, std::array<std::int8_t, D> image) {
-                lists.entries.push_back({id[cell_order[j]], static_cast<std::uint32_t>(j), image});
+                entries.push_back({id[cell_order[j]], static_cast<std::uint32_t>(j), image});
                 if (cell_order[j] >= owned) at_border[s] = 1;
             });
-            sort_by_id(lists.entries.data() + before, lists.entries.data() + lists.entries.size());
-            lists.length[s - begin] = static_cast<std::uint32_t>(lists.entries.size() - before);
+            sort_by_id(entries.data(), entries.data() + entries.size());
+            for (const Entry<D>& entry : entries) lists.index.push_back(entry.index);
+            if (images)
+                for (const Entry<D>& entry : entries) lists.image.push_back(entry.image);
+            lists.length[s - begin] = static_cast<std::uint32_t>(entries.size());
         }
     });
 
@@ -336,9 +342,19 @@ NeighborSearch<D> find_neighbors(const PeriodicBox<D>& box,
     return result;
 }
 
-template NeighborSearch<2> find_neighbors<2>(const PeriodicBox<2>&, std::array<const double*, 2>, const double*,
-                                             const std::int64_t*, std::size_t, double, const Copies&);
-template NeighborSearch<3> find_neighbors<3>(const PeriodicBox<3>&, std::array<const double*, 3>, const double*,
-                                             const std::int64_t*, std::size_t, double, const Copies&);
+template NeighborSearch<2> find_neighbors<2>(const PeriodicBox<2>&,
+                                             std::array<const double*, 2>,
+                                             const double*,
+                                             const std::int64_t*,
+                                             std::size_t,
+                                             double,
+                                             const Copies&);
+template NeighborSearch<3> find_neighbors<3>(const PeriodicBox<3>&,
+                                             std::array<const double*, 3>,
+                                             const double*,
+                                             const std::int64_t*,
+                                             std::size_t,
+                                             double,
+                                             const Copies&);
 
 }  // namespace lamella::spatial

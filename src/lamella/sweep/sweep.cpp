@@ -139,6 +139,8 @@ Sweep load_sweep(const std::filesystem::path& path) {
     Sweep sweep;
     sweep.scene = scene_of(root, path);
     if (const sim::Node* task = root.find("task")) sweep.task = sim::read_options<TaskOptions>(*task);
+    if (sweep.task.ranks > 1 && sweep.task.launcher.find_first_not_of(' ') == std::string::npos)
+        throw InputError({path.string()}, "task.launcher is empty, and something has to start the ranks of a task");
     std::vector<Setting> set;
     if (const sim::Node* table = root.find("set")) set = read_set(*table);
     const std::vector<Axis> axes = axes_of(root);

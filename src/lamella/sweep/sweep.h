@@ -13,13 +13,18 @@ namespace lamella::sweep {
 /// [task]: what one task asks of the machine.
 struct TaskOptions {
     int threads = 1;
+    int ranks = 1;
+    std::string launcher = "mpirun -np {ranks}";
     std::string memory = "2G";
     std::string wall = "01:00:00";
     int per_job = 1;
 
     template <class Visitor>
     void visit(Visitor&& option) {
-        option("threads", threads, sim::between(1, 4096), {"of each run"});
+        option("threads", threads, sim::between(1, 4096), {"of each process of a run"});
+        option("ranks", ranks, sim::between(1, 1000000),
+               {"processes of each run, of solvers that can (docs/clusters.md)"});
+        option("launcher", launcher, {"what starts the processes where there are several; {ranks} is their number"});
         option("memory", memory, {"of a job on a cluster, as Slurm writes it"});
         option("wall", wall,
                {"time limit of a job on a cluster, as Slurm writes it; a run that needs longer goes on in the next"});

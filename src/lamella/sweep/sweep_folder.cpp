@@ -38,7 +38,7 @@ std::string slurm_script(const fs::path& folder, std::size_t tasks, const TaskOp
 # Each job does its share of the tasks. Two minutes before its time is up its runs write checkpoints, and it queues again.
 #SBATCH --job-name=lamella
 #SBATCH --array=0-{last}
-#SBATCH --ntasks=1
+#SBATCH --ntasks={ranks}
 #SBATCH --cpus-per-task={threads}
 #SBATCH --mem={memory}
 #SBATCH --time={wall}
@@ -62,7 +62,7 @@ fi
 exit $status
 )",
                        fmt::arg("last", jobs - 1), fmt::arg("jobs", jobs), fmt::arg("threads", task.threads),
-                       fmt::arg("memory", task.memory), fmt::arg("wall", task.wall),
+                       fmt::arg("ranks", task.ranks), fmt::arg("memory", task.memory), fmt::arg("wall", task.wall),
                        fmt::arg("folder", sim::quoted_text(fs::absolute(folder).lexically_normal().string())));
 }
 

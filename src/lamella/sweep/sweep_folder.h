@@ -36,6 +36,8 @@ public:
     std::filesystem::path scene(std::size_t task) const { return path_ / "scenes" / (names_[task] + ".toml"); }
     std::filesystem::path run(std::size_t task) const { return path_ / "runs" / names_[task]; }
     std::filesystem::path lease(std::size_t task) const { return path_ / "leases" / names_[task]; }
+    /// What the launcher of a task of several ranks said last.
+    std::filesystem::path messages(std::size_t task) const { return lease(task).string() + ".messages"; }
     std::filesystem::path table() const { return path_ / "tasks.csv"; }
 
     std::size_t size() const { return names_.size(); }

@@ -4,9 +4,11 @@
 #include "lamella/sweep/sweep_folder.h"
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace lamella::sweep {
 
@@ -15,6 +17,14 @@ struct WorkSettings {
     std::function<void(std::size_t task, TaskState state, const std::string& message)> on_task =
         [](std::size_t, TaskState, const std::string&) {};  ///< a task begins (kRunning) or ends
     std::string device = "cpu";
+
+    /// For tasks of several ranks: starts this program with these arguments behind the words of a launcher, waits for
+    /// it, and asks it to stop when stop_signal() says so. Returns its exit status.
+    /// @param messages  file for what it says
+    std::function<int(const std::vector<std::string>& launcher,
+                      const std::vector<std::string>& arguments,
+                      const std::filesystem::path& messages)>
+        launch;
 };
 
 struct WorkResult {

@@ -2,6 +2,8 @@
 
 #include "processes.h"
 
+#include "lamella/solvers/bubble/process_plan.h"
+
 namespace lamella::bubble {
 namespace {
 
@@ -50,6 +52,32 @@ TEST(Processes, ContinueEachOthersStates) {
         });
         EXPECT_EQ(resumed.state, whole.state) << processes << " processes";
     }
+}
+
+/// The plan's copies per own bubble over those that are there, on average over the processes.
+template <int D>
+double halo_share_over_found(const Options& options, int processes) {
+    double found = 0.0;
+    as_processes(processes, [&](const Processes& all) {
+        auto solver = make_share<D>(options, all);
+        solver->start({});
+        const System<D>& system = solver->system();
+        std::int64_t copies = static_cast<std::int64_t>(system.domain().copies());
+        copies = dist::sum(*all, copies);
+        if (all->rank() == 0) found = static_cast<double>(copies) / static_cast<double>(system.foam.live);
+    });
+    return halo_share<D>(options, processes) / found;
+}
+
+TEST(Processes, HaveAboutAsManyCopiesAsPlanned) {
+    Options o = coarsening(2, 3000, 0.95);
+    o.start.max_iterations = 20;
+    for (const int processes : {2, 4, 8}) EXPECT_NEAR(halo_share_over_found<2>(o, processes), 1.0, 0.2) << processes;
+    o.box_shape = {{4.0, 1.0, 1.0}};
+    EXPECT_NEAR(halo_share_over_found<2>(o, 4), 1.0, 0.2) << "cut along one axis only";
+    o = coarsening(3, 4000, 0.8);
+    o.start.max_iterations = 20;
+    for (const int processes : {2, 8}) EXPECT_NEAR(halo_share_over_found<3>(o, processes), 1.0, 0.25) << processes;
 }
 
 TEST(Processes, RefuseAStateTogether) {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "process_team.h"
+#include <numeric>
 
 namespace lamella::dist {
 namespace {
@@ -67,6 +68,32 @@ TEST(Sum, OfATrillionTermsHasRoomForTheLargest) {
     // Two terms stand for 10^12 equal ones: the scale leaves room for all of them.
     const double sum = dist::exact_sum(alone, 2, 1e12, [](std::size_t) { return 3.0; });
     EXPECT_EQ(sum, 6.0);
+}
+
+TEST(Sum, GoesTogetherWithMaxima) {
+    as_processes(3, [&](const std::shared_ptr<Communicator>& processes) {
+        FixedSum sums[] = {FixedSum(10.0), FixedSum(10.0)};
+        sums[0].add(processes->rank() + 0.5);
+        sums[1].add(-1.0);
+        double maxima[] = {1.0 * processes->rank(), -2.0 - processes->rank()};
+        reduce(*processes, sums, maxima);
+        EXPECT_EQ(sums[0].value(), 4.5);
+        EXPECT_EQ(sums[1].value(), -3.0);
+        EXPECT_EQ(maxima[0], 2.0);
+        EXPECT_EQ(maxima[1], -2.0);
+    });
+}
+
+TEST(Migration, KeepsWhatStaysInPlaceAndFillsTheGaps) {
+    as_processes(2, [&](const std::shared_ptr<Communicator>& processes) {
+        // Process 0 gives two, drops two and gets one; process 1 gives one and gets two.
+        const bool first = processes->rank() == 0;
+        const int gone = Migration::kGone;
+        const Migration migration(*processes, first ? std::vector{0, 1, gone, 0, 1, 0, gone} : std::vector{1, 0, 1});
+        std::vector<int> items = first ? std::vector{0, 1, 2, 3, 4, 5, 6, -1, -1} : std::vector{10, 11, 12};
+        migration(items);
+        EXPECT_EQ(items, first ? (std::vector{0, 5, 11, 3}) : (std::vector{10, 1, 12, 4}));
+    });
 }
 
 TEST(Migration, BringsEveryItemToItsDestinationWithAllItsColumns) {
@@ -127,15 +154,51 @@ TEST(Halo, KeepsCopiesUpToDateThroughRenumbering) {
     });
 }
 
-TEST(Gather, IsUndoneByScatter) {
-    as_processes(4, [&](const std::shared_ptr<Communicator>& processes) {
-        const Share share = share_of(10, *processes);
-        std::vector<std::int64_t> own;
-        for (std::int64_t i = 0; i < share.count; ++i) own.push_back(share.first + i);
-        const auto all = gather(*processes, std::span<const std::int64_t>(own));
-        EXPECT_EQ(all.size(), processes->rank() == 0 ? 10U : 0U);
-        for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], static_cast<std::int64_t>(i));
-        EXPECT_EQ(scatter(*processes, std::span<const std::int64_t>(all), 10), own);
+TEST(Gather, IsUndoneByScatterInPiecesOfAnySize) {
+    std::vector<std::int64_t> whole(10);
+    std::iota(whole.begin(), whole.end(), 0);
+    for (const std::size_t values : {1U, 2U, 3U, 100U})
+        as_processes(4, [&](const std::shared_ptr<Communicator>& processes) {
+            const Share share = share_of(10, *processes);
+            const auto from = whole.begin() + share.first;
+            const std::vector<std::int64_t> own(from, from + share.count);
+            EXPECT_EQ(gather(*processes, std::span(own)), processes->rank() == 0 ? whole : std::vector<std::int64_t>());
+            std::vector<std::int64_t> pieces;
+            const std::size_t bytes = values * sizeof(std::int64_t);
+            gather_in_pieces(
+                *processes, std::span(own),
+                [&](std::span<const std::int64_t> piece) {
+                    EXPECT_LE(piece.size(), values);
+                    pieces.insert(pieces.end(), piece.begin(), piece.end());
+                },
+                bytes);
+            EXPECT_EQ(pieces, processes->rank() == 0 ? whole : std::vector<std::int64_t>());
+            const auto fetch = [&](std::int64_t first, std::size_t count) {
+                EXPECT_LE(count, values);
+                return std::vector(whole.begin() + first, whole.begin() + first + static_cast<std::int64_t>(count));
+            };
+            EXPECT_EQ(scatter_in_pieces<std::int64_t>(*processes, 10, fetch, bytes), own);
+        });
+}
+
+TEST(Gather, InPiecesFailsForAllWhereTheFileFails) {
+    as_processes(3, [&](const std::shared_ptr<Communicator>& processes) {
+        const std::vector<double> own(5, 1.0);
+        std::size_t taken = 0;
+        const auto take = [&](std::span<const double> piece) {
+            taken += piece.size();
+            if (taken >= 6) throw IoError("the disk is full");
+        };
+        EXPECT_THROW(gather_in_pieces(*processes, std::span<const double>(own), take, 2 * sizeof(double)), IoError);
+        EXPECT_TRUE(taken == 0 || taken == 7) << "nothing is taken after the failure: pieces of 2, 2, 1, 2";
+        std::size_t fetched = 0;
+        const auto fetch = [&](std::int64_t, std::size_t count) -> std::vector<double> {
+            if (++fetched == 4) throw InputError("damaged");
+            return std::vector<double>(count);
+        };
+        EXPECT_THROW(scatter_in_pieces<double>(*processes, 30, fetch, 2 * sizeof(double)), InputError);
+        const auto absent = [](std::int64_t, std::size_t) -> std::vector<double> { throw InputError("shorter"); };
+        EXPECT_THROW(scatter_in_pieces<double>(*processes, std::int64_t{1} << 48, absent), InputError);
     });
 }
 

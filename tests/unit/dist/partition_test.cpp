@@ -74,6 +74,7 @@ void expect_all_near_parts_found(bool walls) {
     Alone alone;
     const Partition<D> partition(alone, cloud.box, cloud.pointers(), cloud.size(), 23);
     const Vec<D> inverse = cloud.box.inverse_lengths();
+    std::size_t inside = 0;
     for (std::size_t i = 0; i < cloud.size(); i += 7) {
         const double reach = 0.2 + 0.002 * static_cast<double>(i);
         std::set<int> found;
@@ -89,7 +90,13 @@ void expect_all_near_parts_found(bool walls) {
         if (i == 0) {
             EXPECT_LT(found.size(), 12U);  // not simply all of them
         }
+        const int own = partition.owner(cloud.point(i));
+        if (partition.holds_all_near(own, cloud.point(i), reach)) {
+            EXPECT_EQ(found, std::set<int>{own});
+        }
+        if (partition.holds_all_near(own, cloud.point(i), 0.01)) ++inside;
     }
+    EXPECT_GT(inside, cloud.size() / 14) << "of every seventh point, more than half";
 }
 
 TEST(Partition, FindsEveryPartNearABall) {

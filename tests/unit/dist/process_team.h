@@ -34,20 +34,16 @@ public:
         int rank() const override { return rank_; }
         int size() const override { return team_.size_; }
 
-        void sum(std::span<std::int64_t> values) override {
-            mine(team_.integers_).assign(values.begin(), values.end());
+        void reduce(std::span<std::int64_t> sums, std::span<double> maxima) override {
+            mine(team_.integers_).assign(sums.begin(), sums.end());
+            mine(team_.reals_).assign(maxima.begin(), maxima.end());
             meet();
-            for (std::size_t k = 0; k < values.size(); ++k) {
-                values[k] = 0;
-                for (const auto& theirs : team_.integers_) values[k] += theirs[k];
+            for (std::size_t k = 0; k < sums.size(); ++k) {
+                sums[k] = 0;
+                for (const auto& theirs : team_.integers_) sums[k] += theirs[k];
             }
-            meet();
-        }
-        void largest(std::span<double> values) override {
-            mine(team_.reals_).assign(values.begin(), values.end());
-            meet();
-            for (std::size_t k = 0; k < values.size(); ++k)
-                for (const auto& theirs : team_.reals_) values[k] = std::max(values[k], theirs[k]);
+            for (std::size_t k = 0; k < maxima.size(); ++k)
+                for (const auto& theirs : team_.reals_) maxima[k] = std::max(maxima[k], theirs[k]);
             meet();
         }
         void broadcast(std::span<std::byte> bytes) override {

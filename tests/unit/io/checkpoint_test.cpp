@@ -75,6 +75,44 @@ TEST(Checkpoint, HasTheSameBytesForTheSameState) {
     EXPECT_TRUE(contents_of(folder / "a.h5") == contents_of(folder / "b.h5"));
 }
 
+TEST(Checkpoint, DoesNotShowInWhatPartsAColumnCame) {
+    const TemporaryFolder folder;
+    const State state;
+    save(folder / "whole.h5", state);
+    const auto total = static_cast<std::int64_t>(state.position.size());
+    for (const std::size_t length : {70'000U, 131'072U, 299'999U}) {
+        CheckpointWriter out(folder / "parts.h5", "bubble");
+        for (std::size_t at = 0; at < state.position.size(); at += length) {
+            const std::span<const double> all = state.position;
+            out.write_part("foam/position", all.subspan(at, std::min(length, all.size() - at)),
+                           {static_cast<std::int64_t>(at), total});
+        }
+        out.write_part("foam/nothing", std::span<const double>(state.nothing), {0, 0});
+        out.write("foam/contacts/id", state.id);
+        out.write("label", state.label);
+        out.write_value("time", state.time);
+        out.write_value("step", state.step);
+        out.commit();
+        EXPECT_TRUE(contents_of(folder / "parts.h5") == contents_of(folder / "whole.h5")) << length;
+    }
+}
+
+TEST(Checkpoint, ReadsStretchesOfAColumn) {
+    const TemporaryFolder folder;
+    const State state;
+    save(folder / "c.h5", state);
+    CheckpointReader in(folder / "c.h5", "bubble");
+    const auto total = static_cast<std::int64_t>(state.position.size());
+    std::vector<double> part;
+    for (const auto& [first, count] : {std::pair{0, 10}, {131'000, 1'000}, {299'999, 1}, {300'000, 0}}) {
+        in.read_stretch("foam/position", {first, total}, static_cast<std::size_t>(count), part);
+        const auto from = state.position.begin() + first;
+        EXPECT_EQ(bits(part), bits(std::vector<double>(from, from + count)));
+    }
+    EXPECT_ERROR(in.read_stretch("foam/position", {0, total + 1}, 3, part), InputError, "has 300000 values");
+    EXPECT_ERROR(in.read_stretch("foam/position", {total - 1, total}, 2, part), InputError, "cannot be read");
+}
+
 TEST(Checkpoint, KeepsThePreviousOne) {
     const TemporaryFolder folder;
     for (std::int64_t step = 1; step <= 3; ++step) save(folder / "c.h5", small_state(step));

@@ -25,19 +25,6 @@ std::uint32_t crc_of(std::string_view bytes) {
     return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-/// CRC-32 of `size` bytes, from those of its blocks: crc_of_block(begin, end).
-template <class BlockCrc>
-std::uint32_t parallel_crc(std::size_t size, BlockCrc&& crc_of_block) {
-    std::vector<std::uint32_t> parts((size + kBlock - 1) / kBlock);
-    parallel_blocks(size, kBlock,
-                    [&](std::size_t begin, std::size_t end) { parts[begin / kBlock] = crc_of_block(begin, end); });
-    uLong crc = crc32_z(0, nullptr, 0);
-    for (std::size_t b = 0; b < parts.size(); ++b) {
-        crc = crc32_combine(crc, parts[b], static_cast<z_off_t>(std::min(kBlock, size - b * kBlock)));
-    }
-    return static_cast<std::uint32_t>(crc);
-}
-
 std::string seal_text(std::size_t bytes, std::uint32_t crc) {
     std::string text = fmt::format(
         "{} {}\nAn HDF5 file that starts at byte {}: h5py, h5dump and other tools open it as it is.\n"
@@ -47,29 +34,21 @@ std::string seal_text(std::size_t bytes, std::uint32_t crc) {
     return text;
 }
 
-/// Reads exactly `size` bytes at `offset`. @returns 0, an error number, or -1 when the file ends before
-int read_at(const FileDescriptor& file, std::size_t offset, char* out, std::size_t size) {
-    while (size > 0) {
-        const ssize_t n = ::pread(file.get(), out, size, static_cast<off_t>(offset));
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return n < 0 ? errno : -1;
-        out += n;
-        offset += static_cast<std::size_t>(n);
-        size -= static_cast<std::size_t>(n);
-    }
-    return 0;
-}
-
+/// CRC-32 of the `size` bytes behind the seal, from those of blocks.
 std::uint32_t file_crc(const FileDescriptor& file, std::size_t size, const std::filesystem::path& path) {
+    std::vector<std::uint32_t> parts((size + kBlock - 1) / kBlock);
     std::atomic<int> error = 0;
-    const std::uint32_t crc = parallel_crc(size, [&](std::size_t begin, std::size_t end) {
+    parallel_blocks(size, kBlock, [&](std::size_t begin, std::size_t end) {
         std::string block(end - begin, '\0');
         if (const int code = read_at(file, kSealSize + begin, block.data(), block.size()); code != 0) error = code;
-        return crc_of(block);
+        parts[begin / kBlock] = crc_of(block);
     });
     if (error < 0) throw InputError({path.string()}, "became shorter while it was read");
     if (error > 0) throw_io_error("read", path, error);
-    return crc;
+    uLong crc = crc32_z(0, nullptr, 0);
+    for (std::size_t b = 0; b < parts.size(); ++b)
+        crc = crc32_combine(crc, parts[b], static_cast<z_off_t>(std::min(kBlock, size - b * kBlock)));
+    return static_cast<std::uint32_t>(crc);
 }
 
 /// What a seal that starts well says of the length; 0 when it does not.
@@ -82,11 +61,8 @@ std::size_t sealed_length(std::string_view seal) {
 
 }  // namespace
 
-std::string checkpoint_seal(std::string_view hdf5_part) {
-    const std::uint32_t crc = parallel_crc(hdf5_part.size(), [&](std::size_t begin, std::size_t end) {
-        return crc_of(hdf5_part.substr(begin, end - begin));
-    });
-    return seal_text(hdf5_part.size(), crc);
+std::string checkpoint_seal(const FileDescriptor& file, std::size_t size, const std::filesystem::path& path) {
+    return seal_text(size - kSealSize, file_crc(file, size - kSealSize, path));
 }
 
 void verify_checkpoint_seal(const std::filesystem::path& path) {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <string_view>
 
 namespace lamella::io::detail {
 
@@ -15,8 +14,11 @@ inline constexpr std::size_t kSealSize = 512;
 inline constexpr const char* kCheckpointFormat = "lamella checkpoint";
 inline constexpr int kCheckpointVersion = 1;
 
-/// The user block for an HDF5 part of these bytes.
-std::string checkpoint_seal(std::string_view hdf5_part);
+class FileDescriptor;
+
+/// The user block for a file of `size` bytes, this block included; reads all of it. @param path  for messages
+/// @throws IoError
+std::string checkpoint_seal(const FileDescriptor& file, std::size_t size, const std::filesystem::path& path);
 
 /// @throws IoError     the file cannot be read
 /// @throws InputError  it is not a checkpoint, of another version, cut short, or damaged

@@ -17,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kLargest = std::size_t{1} << 30;  // one write(2) or read(2) takes less than 2 GiB
+
 /// Makes a rename last through a power failure. File systems that cannot sync a folder say EINVAL.
 void sync_folder(const fs::path& path) {
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -54,13 +56,36 @@ int FileDescriptor::close() {
 }
 
 void write_all(const FileDescriptor& file, std::string_view bytes, const fs::path& path) {
-    constexpr std::size_t kLargest = std::size_t{1} << 30;  // one write(2) takes less than 2 GiB
     while (!bytes.empty()) {
         const ssize_t n = ::write(file.get(), bytes.data(), std::min(bytes.size(), kLargest));
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) throw_io_error("write", path, errno);
         bytes.remove_prefix(static_cast<std::size_t>(n));
     }
+}
+
+int write_at(const FileDescriptor& file, std::size_t offset, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t n =
+            ::pwrite(file.get(), bytes.data(), std::min(bytes.size(), kLargest), static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return errno;
+        bytes.remove_prefix(static_cast<std::size_t>(n));
+        offset += static_cast<std::size_t>(n);
+    }
+    return 0;
+}
+
+int read_at(const FileDescriptor& file, std::size_t offset, char* out, std::size_t size) {
+    while (size > 0) {
+        const ssize_t n = ::pread(file.get(), out, std::min(size, kLargest), static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return n < 0 ? errno : -1;
+        out += n;
+        offset += static_cast<std::size_t>(n);
+        size -= static_cast<std::size_t>(n);
+    }
+    return 0;
 }
 
 AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)), temporary_(with_suffix(path_, ".tmp")) {
@@ -70,7 +95,7 @@ AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)), temporary_(with_
     }
     // What a killed run left is removed, not reused: it may be a link, or still open elsewhere.
     if (::unlink(temporary_.c_str()) != 0 && errno != ENOENT) throw_io_error("write", path_, errno);
-    file_ = FileDescriptor(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    file_ = FileDescriptor(::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (!file_) throw_io_error("write", path_, errno);
     pending_ = true;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string_view>
 
@@ -29,6 +30,12 @@ private:
 /// Writes all bytes at the descriptor's position; `path` is for the message. @throws IoError
 void write_all(const FileDescriptor& file, std::string_view bytes, const std::filesystem::path& path);
 
+/// Writes all bytes at a place of the file. @returns  0 or the error number
+int write_at(const FileDescriptor& file, std::size_t offset, std::string_view bytes);
+
+/// Reads exactly `size` bytes at a place of the file. @returns  0, an error number, or -1 when the file ends before
+int read_at(const FileDescriptor& file, std::size_t offset, char* out, std::size_t size);
+
 /// What happens to the file that an AtomicFile replaces.
 enum class OldFile {
     kReplace,
@@ -47,6 +54,8 @@ public:
 
     /// @throws IoError
     void write(std::string_view bytes);
+    /// For what is written at places of one's own choice (write_at), and read back.
+    const FileDescriptor& descriptor() const { return file_; }
     /// Syncs the bytes and the folder and gives the file its name. @throws IoError  the old file is untouched
     void commit(OldFile old_file = OldFile::kReplace);
 

@@ -26,12 +26,14 @@ std::string time_text(double time, const std::string& unit) {
 
 }  // namespace
 
-Loop::Loop(const RunFolder& folder,
+Loop::Loop(const Team& team,
+           const RunFolder& folder,
            const scene::Scene& scene,
            const Schedule& schedule,
            const RunSettings& settings,
            std::unique_ptr<sim::Solver> solver)
-    : folder_(folder),
+    : team_(team),
+      folder_(folder),
       scene_(scene),
       schedule_(schedule),
       settings_(settings),
@@ -125,8 +127,7 @@ OutputTime Loop::next_output() const {
     const double slow_motion = solver_->slow_motion();
     if (slow_motion <= 1.0) return regular;
     constexpr double kJustBefore = 1.0 - 4e-9;
-    const OutputTime more =
-        schedule_.next(std::max(state_.output_time, kJustBefore * solver_->time()), slow_motion);
+    const OutputTime more = schedule_.next(std::max(state_.output_time, kJustBefore * solver_->time()), slow_motion);
     return is_after(regular.time, more.time) ? more : regular;
 }
 
@@ -187,8 +188,8 @@ void Loop::advance(double limit) {
     record_.evaluations += report.evaluations;
     collect_events();
 
-    // A few are a solver's right (an event takes no time), more are a dead end, unless it says that it is at work: a search
-    // for a rest bounds its own steps.
+    // A few are a solver's right (an event takes no time), more are a dead end, unless it says that it is at work: a
+    // search for a rest bounds its own steps.
     constexpr int kMostIdleSteps = 1000;
     idle_steps_ = solver_->time() > before || report.iterations > 0 ? 0 : idle_steps_ + 1;
     if (idle_steps_ > kMostIdleSteps)
@@ -224,6 +225,10 @@ void Loop::checkpoint() {
 
 void Loop::finish(const std::string& state, const std::string& reason) {
     if (started()) checkpoint();  // inside Solver::start there is no state worth keeping
+    for (const ProcessReport& process : team_.report()) {
+        record_.peak_memory.push_back(process.peak_memory);
+        record_.exchange_seconds.push_back(process.exchange);
+    }
     write_record(state, reason);
     log(LogLevel::kInfo, fmt::format("{}: {}", state, reason));
 }

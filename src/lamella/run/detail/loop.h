@@ -2,6 +2,7 @@
 
 #include "lamella/io/csv.h"
 #include "lamella/run/checkpoint_file.h"
+#include "lamella/run/detail/team.h"
 #include "lamella/run/log_file.h"
 #include "lamella/run/provenance.h"
 #include "lamella/run/run.h"
@@ -20,8 +21,9 @@ namespace lamella::run {
 /// the file lengths in the checkpoint are what makes a resumed run write the same files.
 class Loop {
 public:
-    /// A solver that has not started. `folder` and `settings` must outlive the loop.
-    Loop(const RunFolder& folder,
+    /// A solver of the team that has not started. What is given by reference must outlive the loop.
+    Loop(const Team& team,
+         const RunFolder& folder,
          const scene::Scene& scene,
          const Schedule& schedule,
          const RunSettings& settings,
@@ -57,6 +59,7 @@ private:
     void log(LogLevel level, const std::string& message);
     double now() const;
 
+    const Team& team_;
     const RunFolder& folder_;
     const scene::Scene& scene_;
     Schedule schedule_;

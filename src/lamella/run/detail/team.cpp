@@ -4,6 +4,8 @@
 #include "lamella/dist/agree.h"
 #include "lamella/dist/gather.h"
 
+#include <sys/resource.h>
+
 #include <utility>
 
 namespace lamella::run {
@@ -12,7 +14,18 @@ namespace {
 using dist::Communicator;
 using Processes = std::shared_ptr<Communicator>;
 
-enum class Task : std::int64_t { kLeave, kCreate, kStart, kAdvance, kFrame, kScalars, kMarkFrame, kSave, kLoad };
+enum class Task : std::int64_t {
+    kLeave,
+    kCreate,
+    kStart,
+    kAdvance,
+    kFrame,
+    kScalars,
+    kMarkFrame,
+    kSave,
+    kLoad,
+    kReport
+};
 
 /// What process 0 tells the others to do.
 struct Order {
@@ -46,16 +59,16 @@ auto in_step(Communicator& processes, Work&& work) {
     }
 }
 
-/// Joins the columns that the processes hold parts of, on process 0. There `out` is the file, elsewhere it is empty.
+/// Brings what the processes save to process 0, columns piece by piece. There `out` is the file, elsewhere it is empty.
 class JoiningWriter final : public sim::StateWriter {
 public:
     JoiningWriter(Communicator& processes, sim::StateWriter* out) : processes_(processes), out_(out) {}
     void write(std::string_view name, std::span<const double> v) override { put(name, v); }
     void write(std::string_view name, std::span<const std::int64_t> v) override { put(name, v); }
     void write(std::string_view name, std::span<const std::int32_t> v) override { put(name, v); }
-    void write_part(std::string_view name, std::span<const double> v, sim::Part) override { join(name, v); }
-    void write_part(std::string_view name, std::span<const std::int64_t> v, sim::Part) override { join(name, v); }
-    void write_part(std::string_view name, std::span<const std::int32_t> v, sim::Part) override { join(name, v); }
+    void write_part(std::string_view name, std::span<const double> v, sim::Part p) override { join(name, v, p); }
+    void write_part(std::string_view name, std::span<const std::int64_t> v, sim::Part p) override { join(name, v, p); }
+    void write_part(std::string_view name, std::span<const std::int32_t> v, sim::Part p) override { join(name, v, p); }
 
 private:
     template <class T>
@@ -65,16 +78,20 @@ private:
         });
     }
     template <class T>
-    void join(std::string_view name, std::span<const T> values) {
-        const std::vector<T> all = dist::gather(processes_, values);
-        put(name, std::span<const T>(all));
+    void join(std::string_view name, std::span<const T> values, sim::Part part) {
+        if (part.total == 0) return put(name, values);
+        std::int64_t at = 0;
+        dist::gather_in_pieces(processes_, values, [&](std::span<const T> piece) {
+            out_->write_part(name, piece, {at, part.total});
+            at += static_cast<std::int64_t>(piece.size());
+        });
     }
 
     Communicator& processes_;
     sim::StateWriter* out_;
 };
 
-/// Shares out what process 0 reads. There `in` is the file, elsewhere it is empty.
+/// Shares out what process 0 reads, columns piece by piece. There `in` is the file, elsewhere it is empty.
 class SharingReader final : public sim::StateReader {
 public:
     SharingReader(Communicator& processes, sim::StateReader* in) : processes_(processes), in_(in) {}
@@ -87,21 +104,21 @@ public:
 
 private:
     template <class T>
-    void fetch(std::string_view name, std::size_t count, std::vector<T>& values) {
+    void copy(std::string_view name, std::size_t count, std::vector<T>& values) {
         dist::together(processes_, [&] {
             if (in_ != nullptr) in_->read(name, count, values);
         });
-    }
-    template <class T>
-    void copy(std::string_view name, std::size_t count, std::vector<T>& values) {
-        fetch(name, count, values);
         values.resize(count);
         processes_.broadcast(std::as_writable_bytes(std::span(values)));
     }
     template <class T>
     void share(std::string_view name, std::size_t count, std::vector<T>& values) {
-        fetch(name, count, values);
-        values = dist::scatter(processes_, std::span<const T>(values), static_cast<std::int64_t>(count));
+        const auto total = static_cast<std::int64_t>(count);
+        values = dist::scatter_in_pieces<T>(processes_, total, [&](std::int64_t first, std::size_t wanted) {
+            std::vector<T> piece;
+            in_->read_stretch(name, {first, total}, wanted, piece);
+            return piece;
+        });
     }
 
     Communicator& processes_;
@@ -115,6 +132,18 @@ sim::Frame joined(Communicator& processes, sim::Frame share) {
     for (sim::Field& field : share.points.fields)
         field.values = dist::gather(processes, std::span<const double>(field.values));
     return share;
+}
+
+ProcessReport own_report(const Communicator* processes) {
+    struct rusage usage {};
+    ::getrusage(RUSAGE_SELF, &usage);
+    constexpr double kUnit = 1024.0;  // of Linux's ru_maxrss [bytes]
+    return {kUnit * static_cast<double>(usage.ru_maxrss), processes != nullptr ? processes->seconds() : 0.0};
+}
+
+std::vector<ProcessReport> gathered_reports(Communicator& processes) {
+    const ProcessReport own = own_report(&processes);
+    return dist::gather(processes, std::span(&own, 1));
 }
 
 /// Process 0's solver, which has all the others do the same.
@@ -198,6 +227,9 @@ void obey(Communicator& processes, const Order& order, sim::Solver& solver) {
             solver.load(reader);
             break;
         }
+        case Task::kReport:
+            gathered_reports(processes);
+            break;
         case Task::kLeave:
         case Task::kCreate:
             break;
@@ -218,6 +250,12 @@ std::unique_ptr<sim::Solver> Team::create(const MakeSolver& make) {
     if (!processes_) return make(nullptr);
     give(*processes_, {Task::kCreate});
     return std::make_unique<TeamSolver>(processes_, dist::together(*processes_, [&] { return make(processes_); }));
+}
+
+std::vector<ProcessReport> Team::report() const {
+    if (!processes_) return {own_report(nullptr)};
+    give(*processes_, {Task::kReport});
+    return gathered_reports(*processes_);
 }
 
 void follow(const Processes& processes, const MakeSolver& make) {

@@ -5,10 +5,17 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace lamella::run {
 
 using MakeSolver = std::function<std::unique_ptr<sim::Solver>(const std::shared_ptr<dist::Communicator>&)>;
+
+/// What one process has used so far.
+struct ProcessReport {
+    double peak_memory = 0.0;  ///< resident [bytes]
+    double exchange = 0.0;     ///< time spent with messages and sums, waiting included [s]
+};
 
 /// Process 0's end of the line to the others: what it does with its solver, all do. It alone decides what is next,
 /// reads the clock, hears signals and writes files; the others follow.
@@ -23,6 +30,9 @@ public:
     /// A solver on every process, which make() creates; the one returned calls them all.
     /// @throws  what make() throws on any of them
     std::unique_ptr<sim::Solver> create(const MakeSolver& make);
+
+    /// Of each process, by rank.
+    std::vector<ProcessReport> report() const;
 
 private:
     std::shared_ptr<dist::Communicator> processes_;

@@ -231,10 +231,10 @@ sim::StepReport BubbleSolver<D>::advance(double time_limit) {
     system_->follow_images();
     clock_.tick(step, landing, time_limit, time_rate_);
 
-    std::vector<sim::Event> removed = remove_vanished(*system_, options_.compat.removal);
-    if (!removed.empty()) integrator_->foam_changed();
-    look_for_the_largest();
-    for (sim::Event& event : removed) {
+    Removal removal = remove_vanished(*system_, options_.compat.removal);
+    if (!removal.events.empty()) integrator_->foam_changed();
+    largest_size_ = removal.largest_size;
+    for (sim::Event& event : removal.events) {
         event.time = clock_.time;
         events_.push_back(std::move(event));
     }

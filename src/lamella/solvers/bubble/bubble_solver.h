@@ -13,6 +13,9 @@
 
 namespace lamella::bubble {
 
+template <int D>
+struct Census;
+
 namespace detail {
 template <int D>
 class DeviceRunner;
@@ -51,6 +54,7 @@ public:
     }
 
 private:
+    std::vector<sim::Scalar> scalars_from(const Census<D>& census) const;
     IdOrder<D> id_order() const { return IdOrder<D>(*system_, start_count_); }
     void remember_start();
     void make_integrator();

@@ -147,16 +147,12 @@ Evaluation contact_pass(const Model& model,
     Sums sums = over(0, neighbors.interior_groups);
     domain.end_refresh();
     sums += over(neighbors.interior_groups, neighbors.groups());
+    FixedSum all[] = {sums.gas.weight, sums.gas.weight_by_size, sums.gas.scale};
+    double stiffest[] = {sums.stiffness};
+    domain.reduce(with_gas ? std::span(all) : std::span<FixedSum>(), bound ? std::span(stiffest) : std::span<double>());
     Evaluation result;
-    if (with_gas) {
-        FixedSum all[] = {sums.gas.weight, sums.gas.weight_by_size, sums.gas.scale};
-        domain.sum(all);
-        result.gas = close_exchange<D>(model, {all[0], all[1], all[2]}, static_cast<double>(live));
-    }
-    if (bound) {
-        result.stiffness = domain.largest(sums.stiffness);
-        if (with_gas) result.stiffness += exchange_stiffness<D>(model);
-    }
+    if (with_gas) result.gas = close_exchange<D>(model, {all[0], all[1], all[2]}, static_cast<double>(live));
+    if (bound) result.stiffness = stiffest[0] + (with_gas ? exchange_stiffness<D>(model) : 0.0);
     return result;
 }
 

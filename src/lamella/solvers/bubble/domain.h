@@ -29,6 +29,8 @@ public:
 
     /// Each becomes the sum over all processes.
     void sum(std::span<FixedSum> sums) const { dist::sum(*processes_, sums); }
+    /// Sums and maxima on one way: cheaper than one after another.
+    void reduce(std::span<FixedSum> sums, std::span<double> maxima) const { dist::reduce(*processes_, sums, maxima); }
     std::int64_t sum(std::int64_t value) const { return dist::sum(*processes_, value); }
     double largest(double value) const { return dist::largest(*processes_, value); }
     void largest(std::span<double> values) const { processes_->largest(values); }

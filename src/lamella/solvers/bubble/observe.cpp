@@ -1,15 +1,15 @@
 // What can be seen of a bubble foam: frames, scalars, the numbers of `lamella check`.
 
-#include <algorithm>
-#include <cmath>
-
-#include <fmt/format.h>
-
 #include "lamella/core/fixed_sum.h"
 #include "lamella/core/parallel.h"
 #include "lamella/solvers/bubble/bubble_solver.h"
 #include "lamella/solvers/bubble/census.h"
 #include "lamella/solvers/bubble/process_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace lamella::bubble {
 namespace {
@@ -41,6 +41,8 @@ sim::Frame BubbleSolver<D>::frame() const {
     const IdOrder<D> order = id_order();
     const Census<D> census = take_census(*system_, options_);
     const Column& energy = options_.compat.energy ? census.energy_thesis : census.energy;
+    // First, before the frame takes its memory.
+    std::vector<sim::Scalar> scalars_now = scalars_from(census);
     const Vec<D> inverse = foam.box.inverse_lengths();
 
     sim::Frame frame;
@@ -86,15 +88,19 @@ sim::Frame BubbleSolver<D>::frame() const {
     add("contacts", 1, [&](Index i, Index) { return static_cast<double>(census.contacts[i]); }).integer = true;
     add("pressure", 1, [&](Index i, Index) { return census.pressure[i]; });
     add("free_surface", 1, [&](Index i, Index) { return census.free_surface[i]; });
-    frame.scalars = scalars();
+    frame.scalars = std::move(scalars_now);
     return frame;
 }
 
 template <int D>
 std::vector<sim::Scalar> BubbleSolver<D>::scalars() const {
     observe();
+    return scalars_from(take_census(*system_, options_));
+}
+
+template <int D>
+std::vector<sim::Scalar> BubbleSolver<D>::scalars_from(const Census<D>& census) const {
     const Model& model = system_->model;
-    const Census<D> census = take_census(*system_, options_);
     std::vector<sim::Scalar> list = {
         {"scaled_time", "-", clock_.mechanical_time * model.scaled_time_rate(), "tau = K t/<R_in>^2"},
         {"mechanical_time", "-", clock_.mechanical_time, "t, in units of the scene"},
@@ -118,7 +124,8 @@ std::vector<sim::Scalar> BubbleSolver<D>::scalars() const {
     list.push_back({"steps", "-", static_cast<double>(clock_.steps), "accepted steps"});
     list.push_back({"evaluations", "-", static_cast<double>(clock_.evaluations), "of the right-hand side"});
     list.push_back({"rejections", "-", static_cast<double>(clock_.rejections), "rejected steps"});
-    list.push_back({"mean_step", "-", clock_.steps > 0 ? clock_.mechanical_time / static_cast<double>(clock_.steps) : 0.0,
+    list.push_back({"mean_step", "-",
+                    clock_.steps > 0 ? clock_.mechanical_time / static_cast<double>(clock_.steps) : 0.0,
                     "mechanical time per step"});
     return list;
 }
@@ -126,7 +133,6 @@ std::vector<sim::Scalar> BubbleSolver<D>::scalars() const {
 template <int D>
 std::vector<sim::Scalar> BubbleSolver<D>::characteristic_numbers() const {
     const Model& m = system_->model;
-    const double count = options_.count;
     const double mean = options_.mean_radius;
     const double relaxation = mean * 2.0 / m.push_rate;
     std::vector<sim::Scalar> list = {
@@ -142,11 +148,14 @@ std::vector<sim::Scalar> BubbleSolver<D>::characteristic_numbers() const {
                         "keep well below 1: the foam must relax faster than it coarsens"});
     }
     const ProcessPlan plan = plan_processes<D>(options_);
-    list.push_back({"memory", "MB", count * plan.bytes_per_bubble * 1e-6, "state and neighbor lists"});
+    list.push_back({"memory", "MB", plan.memory_alone * 1e-6, "of one process, at most, at the start"});
     list.push_back({"processes", "-", plan.processes,
                     "as many as work at 80 % of one process's speed each, by a model (docs/clusters.md)"});
-    list.push_back({"memory_per_process", "MB", plan.memory * 1e-6, "of that many, copies of others' bubbles included"});
-    list.push_back({"halo_share", "-", plan.halo_share, "copies of others' bubbles per bubble of a process, at the start"});
+    list.push_back(
+        {"memory_per_process", "MB", plan.memory * 1e-6, "of each of that many, copies of others' bubbles included"});
+    list.push_back({"memory_process_0", "MB", plan.memory_first * 1e-6, "of the one that gathers and writes frames"});
+    list.push_back(
+        {"halo_share", "-", plan.halo_share, "copies of others' bubbles per bubble of a process, at the start"});
     return list;
 }
 

@@ -2,16 +2,45 @@
 
 #include "lamella/solvers/bubble/shape.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 namespace lamella::bubble {
 namespace {
 
-// The first is of one core of a shared machine (docs/performance.md); the others are assumed, nothing has checked them.
+// Of one core of an AMD EPYC, with two processes on two cores (docs/clusters.md); the time per copy is assumed.
 template <int D>
-constexpr double kSecondsPerBubble = D == 2 ? 6e-8 : 1.2e-7;
+constexpr double kSecondsPerBubble = D == 2 ? 3e-8 : 8e-8;
 constexpr double kSecondsPerCopy = 2e-8;
-constexpr double kLatency = 3e-6;
+constexpr double kLatency = 7e-6;
+
+// Resident memory in bytes per bubble, measured at 1e6 bubbles with frames (docs/clusters.md). The most is taken while
+// a frame is written; by other processes than 0 while bubbles change hands and neighbor lists are built.
+constexpr double kProgramBytes = 34e6;
+template <int D>
+constexpr double kAlone = D == 2 ? 640.0 : 835.0;
+template <int D>
+constexpr double kShared = D == 2 ? 550.0 : 680.0;
+template <int D>
+constexpr double kShowing = D == 2 ? 330.0 : 540.0;  // while there is a frame, beside it
+template <int D>
+constexpr double kGathered = D == 2 ? 380.0 : 405.0;  // the frame of the whole and its text
+constexpr double kCopy = 100.0;
+
+/// Mean of q = R^d over the radii of the start, taken as normal.
+template <int D>
+double mean_size(double mean, double deviation) {
+    const double square = mean * mean + deviation * deviation;
+    return D == 2 ? square : mean * (square + 2.0 * deviation * deviation);
+}
+
+/// About where the largest of `count` normal numbers lies, in standard deviations from the mean.
+double largest_deviation(double count) {
+    const double root = std::sqrt(2.0 * std::log(std::max(count, 10.0)));
+    return root - (std::log(std::log(std::max(count, 10.0))) + std::log(4.0 * std::numbers::pi)) / (2.0 * root);
+}
 
 }  // namespace
 
@@ -19,11 +48,35 @@ template <int D>
 double halo_share(const Options& options, double processes) {
     if (processes <= 1.0) return 0.0;
     const double mean = options.mean_radius;
-    const double largest = mean + 3.5 * options.start.radius_std;
-    const double reach = mean + largest + options.integrator.skin * mean;
-    const double volume = options.count * Shape<D>::kVolume * Shape<D>::size(mean) / options.gas_fraction;
-    const double edge = std::pow(volume / processes, 1.0 / D);
-    return std::min(std::pow(1.0 + 2.0 * reach / edge, D) - 1.0, processes - 1.0);
+    const double deviation = options.start.radius_std;
+    const double reach = 2.0 * mean + largest_deviation(options.count) * deviation + options.integrator.skin * mean;
+    const double volume = options.count * Shape<D>::kVolume * mean_size<D>(mean, deviation) / options.gas_fraction;
+    // Each cut halves the longest edge; along an axis that no cut has met there is nobody else.
+    Vec<D> edge;
+    double shape = 1.0;
+    for (std::size_t k = 0; k < D; ++k) shape *= options.box_shape[k];
+    for (std::size_t k = 0; k < D; ++k) edge[k] = options.box_shape[k] * std::pow(volume / shape, 1.0 / D);
+    std::array<bool, D> cut{};
+    for (double p = 1.0; p < processes; p *= 2.0) {
+        std::size_t longest = 0;
+        for (std::size_t k = 1; k < D; ++k)
+            if (edge[k] > edge[longest]) longest = k;
+        edge[longest] *= 0.5;
+        cut[longest] = true;
+    }
+    double around = 1.0;
+    for (std::size_t k = 0; k < D; ++k)
+        if (cut[k]) around *= 1.0 + 2.0 * reach / edge[k];
+    return std::min(around - 1.0, processes - 1.0);
+}
+
+template <int D>
+double process_memory(const Options& options, double processes, bool first) {
+    if (processes <= 1.0) return kProgramBytes + options.count * kAlone<D>;
+    const double own = options.count / processes;
+    const double working = own * (kShared<D> + kCopy * halo_share<D>(options, processes));
+    const double gathering = own * kShowing<D> + options.count * kGathered<D>;
+    return kProgramBytes + (first ? std::max(working, gathering) : working);
 }
 
 template <int D>
@@ -31,7 +84,6 @@ ProcessPlan plan_processes(const Options& options) {
     constexpr double kWorthIt = 1.25;
     constexpr double kMost = 1 << 20;
     ProcessPlan plan;
-    plan.bytes_per_bubble = D == 2 ? 290.0 : 420.0;
     const auto cost = [&](double processes) {
         return options.count / processes *
                    (kSecondsPerBubble<D> + kSecondsPerCopy * halo_share<D>(options, processes)) +
@@ -39,13 +91,16 @@ ProcessPlan plan_processes(const Options& options) {
     };
     for (double p = 2.0; p <= kMost && cost(p) * p <= kWorthIt * cost(1.0); p *= 2.0) plan.processes = p;
     plan.halo_share = halo_share<D>(options, plan.processes);
-    // A copy has an entry in the four or five columns that neighbors read.
-    plan.memory = options.count / plan.processes * (plan.bytes_per_bubble + plan.halo_share * (D == 2 ? 60.0 : 80.0));
+    plan.memory_alone = process_memory<D>(options, 1.0, true);
+    plan.memory = process_memory<D>(options, plan.processes, false);
+    plan.memory_first = process_memory<D>(options, plan.processes, true);
     return plan;
 }
 
 template double halo_share<2>(const Options&, double);
 template double halo_share<3>(const Options&, double);
+template double process_memory<2>(const Options&, double, bool);
+template double process_memory<3>(const Options&, double, bool);
 template ProcessPlan plan_processes<2>(const Options&);
 template ProcessPlan plan_processes<3>(const Options&);
 

@@ -2,18 +2,18 @@
 // explicit method of fixed order gets s/2. Written in increments d_j = Y_j - y_n, so that the gas, a linear
 // invariant, is conserved to round-off, and so that the state is read once per stage.
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
-#include <fmt/format.h>
-
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/core/simd.h"
 #include "lamella/solvers/bubble/chebyshev.h"
 #include "lamella/solvers/bubble/integrator.h"
 #include "lamella/solvers/bubble/move.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
 
 namespace lamella::bubble {
 namespace {
@@ -58,7 +58,7 @@ public:
 private:
     void evaluate_first(System<D>& system);
     StagesEnd run_stages(System<D>& system, double h, int stages);
-    double advance_stage(System<D>& system, const StageWeights& weights, double h, bool first);
+    double advance_stage(System<D>& system, const StageWeights& weights, double h, int number);
     double step_error(const System<D>& system, const GasExchange& gas, double h) const;
 
     IntegratorOptions options_;
@@ -70,8 +70,8 @@ private:
     Increment<D> last_, before_;  // d_(j-1), d_(j-2)
     GasExchange gas_;             // of the last evaluated stage
     double start_expansion_ = 0.0;
-    double stage_reach_ = 0.0;    // largest |dx| + dR of the stages so far
-    double expected_reach_ = 0.0; // of the last step: decides whether lists are rebuilt before the next
+    double stage_reach_ = 0.0;     // largest |dx| + dR of the stages so far
+    double expected_reach_ = 0.0;  // of the last step: decides whether lists are rebuilt before the next
     std::int64_t evaluations_ = 0;
 };
 
@@ -88,13 +88,17 @@ void Rkc2<D>::evaluate_first(System<D>& system) {
 
 /// One stage: the increment, the state that it leads to, and the largest |dx| + dR from the step's start.
 template <int D>
-double Rkc2<D>::advance_stage(System<D>& system, const StageWeights& w, double h, bool first) {
+double Rkc2<D>::advance_stage(System<D>& system, const StageWeights& w, double h, int number) {
     const Foam<D>& foam = system.foam;
     Stage<D>& stage = system.stage;
     const Rates<D>& rates = system.rates;
     const Model& model = system.model;
     const bool exchange = model.exchanges_gas();
     const StageWeights step{w.mu, w.nu, h * w.rate, h * w.first_rate};
+    const bool first = number == 1;
+    const auto load_before = [&](const Column& column, std::size_t at) {
+        return number == 2 ? Simd(0.0) : load_lanes(&column[at]);  // d_0
+    };
 
     const auto group_reach = [&](std::size_t at) {
         Simd squared = 0.0;
@@ -102,7 +106,7 @@ double Rkc2<D>::advance_stage(System<D>& system, const StageWeights& w, double h
             const Simd f0 = load_lanes(&foam.velocity[k][at]);
             const Simd d = first ? step.first_rate * f0
                                  : chebyshev::stage_increment(step, f0, load_lanes(&last_.position[k][at]),
-                                                              load_lanes(&before_.position[k][at]),
+                                                              load_before(before_.position[k], at),
                                                               load_lanes(&rates.velocity[k][at]));
             store_lanes(d, &before_.position[k][at]);
             store_lanes(load_lanes(&foam.position[k][at]) + d, &stage.position[k][at]);
@@ -116,7 +120,7 @@ double Rkc2<D>::advance_stage(System<D>& system, const StageWeights& w, double h
         if (!first) {
             const Simd size_rate = gas_.size_rate(load_lanes(&rates.film[at]), load_lanes(&rates.weight[at]),
                                                   load_lanes(&stage.inverse_radius[at]));
-            d = chebyshev::stage_increment(step, f0, load_lanes(&last_.size[at]), load_lanes(&before_.size[at]),
+            d = chebyshev::stage_increment(step, f0, load_lanes(&last_.size[at]), load_before(before_.size, at),
                                            size_rate);
         }
         store_lanes(d, &before_.size[at]);
@@ -144,10 +148,10 @@ StagesEnd Rkc2<D>::run_stages(System<D>& system, double h, int stages) {
     const std::vector<StageWeights> weights = chebyshev::stage_weights(stages);
     const double farthest = farthest_move(system);
     stage_reach_ = 0.0;
-    last_.assign_zero(system.length());  // d_0, which stage 2 reads
+    last_.resize(system.length());
     before_.resize(system.length());
     for (int j = 1; j <= stages; ++j) {
-        const double reach = advance_stage(system, weights[static_cast<std::size_t>(j)], h, j == 1);
+        const double reach = advance_stage(system, weights[static_cast<std::size_t>(j)], h, j);
         stage_reach_ = std::max(stage_reach_, reach);
         if (!(stage_reach_ < farthest)) return StagesEnd::kTooFar;
         if (start_expansion_ + stage_reach_ >= system.reach()) return StagesEnd::kListsOutgrown;
@@ -211,8 +215,7 @@ Step Rkc2<D>::step(System<D>& system, double longest) {
         }
         ++done.rejections;
         stiffness_ = first_stiffness;
-        if (next_step_ < 1e-12)
-            throw NumericalError(step_underflow(done.error, tolerance));
+        if (next_step_ < 1e-12) throw NumericalError(step_underflow(done.error, tolerance));
     }
     expected_reach_ = stage_reach_;
     accept_moved(system, last_);

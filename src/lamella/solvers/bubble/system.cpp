@@ -47,26 +47,22 @@ template <int D>
 void System<D>::distribute() {
     if (!domain_->several()) return;
     dist::Communicator& processes = domain_->processes();
-    const std::vector<std::uint32_t> kept = live_slots();
-    const std::vector<Column*> in_use = attached_in_use();
-    const auto for_each = [&](auto&& visit) {
-        Foam<D>::for_each_column(foam, [&](const std::string&, auto& column) { visit(column); });
-        for (Column* column : in_use) visit(*column);
-    };
-    for_each([&](auto& column) { reorder(column, kept, kept.size()); });
-    foam.slots = kept.size();
-
     if (!partition_ || unbalanced_ || !(partitioned_lengths_ == foam.box.lengths)) {
         partition_.emplace(processes, foam.box, pointers<D>(foam.position), foam.slots, processes.size());
         partitioned_lengths_ = foam.box.lengths;
     }
     std::vector<int> owner(foam.slots);
-    parallel_for(foam.slots, [&](std::size_t i) { owner[i] = partition_->owner(place(i)); });
+    parallel_for(foam.slots, [&](std::size_t i) {
+        owner[i] = foam.alive(i) ? partition_->owner(place(i)) : dist::Migration::kGone;
+    });
     const dist::Migration migration(processes, owner);
-    for_each([&](auto& column) { migration(column); });
     foam.slots = migration.count();
-    const std::size_t length = spatial::padded(foam.slots);
-    for_each([&](auto& column) { column.resize(length); });
+    const auto move = [&](auto& column) {
+        migration(column);
+        column.resize(length());
+    };
+    Foam<D>::for_each_column(foam, [&](const std::string&, auto& column) { move(column); });
+    for (Column* column : attached_in_use()) move(*column);
 
     constexpr double kWorthANewPartition = 1.05;
     const double most = domain_->largest(static_cast<double>(foam.slots));
@@ -97,7 +93,9 @@ dist::Halo System<D>::find_copies(const std::vector<std::uint32_t>& kept, double
     std::vector<std::vector<std::uint32_t>> wanted(static_cast<std::size_t>(processes.size()));
     for (std::uint32_t n = 0; n < kept.size(); ++n) {
         const double reach = Shape<D>::radius(foam.size[kept[n]]) + largest_radius + skin_;
-        partition_->for_each_near(place(kept[n]), reach, [&](int rank) {
+        const Vec<D> center = place(kept[n]);
+        if (partition_->holds_all_near(processes.rank(), center, reach)) continue;
+        partition_->for_each_near(center, reach, [&](int rank) {
             if (rank != processes.rank()) wanted[static_cast<std::size_t>(rank)].push_back(n);
         });
     }
@@ -128,6 +126,7 @@ void System<D>::rebuild(double least_reach) {
     for (auto& column : position) append(column);
     append(radius);
     append(id);
+    neighbors_ = {};  // the old lists make room for the new ones
     auto search = spatial::find_neighbors<D>(foam.box, pointers<D>(position), radius.data(), id.data(), radius.size(),
                                              skin_, {.count = halo.copies(), .largest_radius = largest});
     neighbors_ = std::move(search.list);
