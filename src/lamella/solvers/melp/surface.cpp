@@ -20,16 +20,18 @@ Triangle turned(Triangle t) {
     return t;
 }
 
-/// The neighbors of particle i that its Voronoi cell in the tangent plane touches, in turn: the cell is cut out of a
-/// large square by the bisectors of one neighbor after the other.
-std::vector<std::uint32_t> delaunay_ring(std::span<const Vec3> position,
-                                         const Vec3& normal,
-                                         const Neighbors& same,
-                                         std::size_t i) {
-    struct Corner {
-        double u, v;
-        std::uint32_t next;  // whose bisector the side after this corner lies on
-    };
+/// A corner of a Voronoi cell in the tangent plane of its particle.
+struct Corner {
+    double u, v;
+    std::uint32_t next;  // whose bisector the side after this corner lies on
+};
+
+/// The Voronoi cell of particle i among its neighbors, laid into its tangent plane: it is cut out of a large square by
+/// the bisectors of one neighbor after the other.
+std::vector<Corner> voronoi_cell(std::span<const Vec3> position,
+                                 const Vec3& normal,
+                                 const Neighbors& same,
+                                 std::size_t i) {
     const double far = same.kernel.support_radius;
     std::vector<Corner> cell{{-far, -far, kNobody}, {far, -far, kNobody}, {far, far, kNobody}, {-far, far, kNobody}},
         cut;
@@ -55,8 +57,16 @@ std::vector<std::uint32_t> delaunay_ring(std::span<const Vec3> position,
         }
         cell.swap(cut);
     }
+    return cell;
+}
+
+/// The neighbors that the cell touches, in turn.
+std::vector<std::uint32_t> delaunay_ring(std::span<const Vec3> position,
+                                         const Vec3& normal,
+                                         const Neighbors& same,
+                                         std::size_t i) {
     std::vector<std::uint32_t> ring;
-    for (const Corner& c : cell) ring.push_back(c.next);
+    for (const Corner& c : voronoi_cell(position, normal, same, i)) ring.push_back(c.next);
     return ring;
 }
 
@@ -151,6 +161,16 @@ double star_volume(const CoarseParticles& coarse, const Geometry& geometry, std:
         sum += dot(x[i] - center, area) / 3.0 + norm(area) * bulge / 24.0;
     }
     return sum / 3.0;
+}
+
+double cell_area(const CoarseParticles& coarse, const Geometry& geometry, std::size_t i) {
+    const std::vector<Corner> cell = voronoi_cell(coarse.position, geometry.normal[i], geometry.neighbors.same, i);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < cell.size(); ++k) {
+        const Corner& b = cell[(k + 1) % cell.size()];
+        sum += cell[k].u * b.v - cell[k].v * b.u;
+    }
+    return 0.5 * sum;
 }
 
 std::size_t open_edges(const Triangles& triangles) {
