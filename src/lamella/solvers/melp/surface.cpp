@@ -36,12 +36,12 @@ std::vector<Corner> voronoi_cell(std::span<const Vec3> position,
     std::vector<Corner> cell{{-far, -far, kNobody}, {far, -far, kNobody}, {far, far, kNobody}, {-far, far, kNobody}},
         cut;
     const Frame frame = frame_of(normal);
-    for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
-        const Vec3 d = position[same.index[k]] - position[i];
-        const double u = dot(frame.e1, d), v = dot(frame.e2, d), half = 0.5 * (u * u + v * v);
+    double farthest = 2.0 * far * far;  // corner, squared
+    const auto cut_off = [&](std::uint32_t j, double u, double v) {
+        const double half = 0.5 * (u * u + v * v);
+        if (half == 0.0 || half > 2.0 * farthest) return;  // its bisector passes beyond all corners
         const auto beyond = [&](const Corner& c) { return c.u * u + c.v * v - half; };
-        if (half == 0.0 || std::none_of(cell.begin(), cell.end(), [&](const Corner& c) { return beyond(c) > 0.0; }))
-            continue;
+        if (std::none_of(cell.begin(), cell.end(), [&](const Corner& c) { return beyond(c) > 0.0; })) return;
         cut.clear();
         for (std::size_t c = 0; c < cell.size(); ++c) {
             const Corner& a = cell[c];
@@ -52,11 +52,20 @@ std::vector<Corner> voronoi_cell(std::span<const Vec3> position,
                 return Corner{a.u + s * (b.u - a.u), a.v + s * (b.v - a.v), next};
             };
             if (at_a <= 0.0) cut.push_back(a);
-            if (at_a <= 0.0 && at_b > 0.0) cut.push_back(crossing(same.index[k]));
+            if (at_a <= 0.0 && at_b > 0.0) cut.push_back(crossing(j));
             if (at_a > 0.0 && at_b <= 0.0) cut.push_back(crossing(a.next));
         }
         cell.swap(cut);
-    }
+        farthest = 0.0;
+        for (const Corner& c : cell) farthest = std::max(farthest, c.u * c.u + c.v * c.v);
+    };
+    // Near ones first: few of the others touch what they leave.
+    const double near = 0.5 * far;
+    for (const bool nearer : {true, false})
+        for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
+            const Vec3 d = position[same.index[k]] - position[i];
+            if ((squared_norm(d) < near * near) == nearer) cut_off(same.index[k], dot(frame.e1, d), dot(frame.e2, d));
+        }
     return cell;
 }
 

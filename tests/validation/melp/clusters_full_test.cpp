@@ -1,4 +1,6 @@
-// Two bubbles that have just touched settle into the standard double bubble. [method sheet 14: V2, V4]
+// Bubbles that have just touched settle into the clusters that theory knows. [method sheet 14: V2, V3, V4]
+
+#include "lamella/solvers/melp/foam.h"
 
 #include <gtest/gtest.h>
 
@@ -82,6 +84,96 @@ TEST(UnequalBubbles, HaveThePartitionThatTheirPressuresAskFor) {
         EXPECT_NEAR(angle_between(large, small), 120.0, 1.2);
         for (const auto& [cap, r] : {std::pair{large, 0}, {small, 1}})
             EXPECT_NEAR(solver->gas()[r].balanced * cap.radius / (4.0 * 0.0725), 1.0, 0.01);
+    }
+}
+
+/// Where the borders of three bubbles are, on the average: of particles of the first that see both others, near z = 0.
+Vec3 border_of(const MelpSolver& solver, std::int32_t a, std::int32_t b, std::int32_t c) {
+    Vec3 sum;
+    double count = 0.0;
+    for (std::size_t i = 0; i < solver.coarse().size(); ++i) {
+        if (solver.coarse().region[i] != a || std::abs(solver.coarse().position[i][2]) > 0.005) continue;
+        double seen_b = 0.0, seen_c = 0.0;
+        for (const Share& share : shares_at(solver.coarse(), solver.geometry(), i)) {
+            if (share.region == b) seen_b = share.gamma;
+            if (share.region == c) seen_c = share.gamma;
+        }
+        const double weight = seen_b * seen_c;
+        sum += weight * solver.coarse().position[i];
+        count += weight;
+    }
+    return sum / count;
+}
+
+/// From region a to region b, of the film between them where it ends at `place`: the mean normal of its layers, turned
+/// by how far the film bends from its middle to there, as the pressures say.
+Vec3 film_normal(const MelpSolver& solver, std::int32_t a, std::int32_t b, const Vec3& place) {
+    constexpr double kOnFilm = 0.5;
+    Vec3 mean, middle;
+    double count = 0.0;
+    for (std::size_t i = 0; i < solver.coarse().size(); ++i) {
+        const std::int32_t mine = solver.coarse().region[i];
+        if (mine != a && mine != b) continue;
+        for (const Share& share : shares_at(solver.coarse(), solver.geometry(), i)) {
+            if (share.region != (mine == a ? b : a) || share.gamma < kOnFilm) continue;
+            mean += (mine == a ? 1.0 : -1.0) * solver.geometry().normal[i];
+            middle += solver.coarse().position[i];
+            count += 1.0;
+        }
+    }
+    mean = mean / norm(mean);
+    const auto pressure = [&](std::int32_t r) { return solver.gas()[static_cast<std::size_t>(r)].balanced; };
+    const Vec3 n = mean + ((pressure(a) - pressure(b)) / (4.0 * 0.025)) * (place - middle / count);
+    return n / norm(n);
+}
+
+/// Four in a square, one diagonal 1 % shorter, fly at each other and would meet along one line, which is unstable: the
+/// two on that diagonal join, and two borders remain. [method sheet 12]
+TEST(FourBubbles, GoFromACrossToTwoBordersOf120Degrees) {
+    auto solver = solver_of(R"(
+[material]
+surface_tension = 0.025
+thickness = 5e-7
+[[bubble]]
+center = [-0.0203, -0.0203, 0.0]
+radius = 0.02
+velocity = [0.07, 0.07, 0.0]
+[[bubble]]
+center = [0.0207, -0.0207, 0.0]
+radius = 0.02
+velocity = [-0.07, 0.07, 0.0]
+[[bubble]]
+center = [-0.0207, 0.0207, 0.0]
+radius = 0.02
+velocity = [0.07, -0.07, 0.0]
+[[bubble]]
+center = [0.0203, 0.0203, 0.0]
+radius = 0.02
+velocity = [-0.07, -0.07, 0.0]
+[resolution]
+edge_length = 0.0025
+[melp]
+fine_ratio = 0
+damping = 500.0
+steps_per_period = 40.0
+)");
+    solver->start({});
+    while (solver->time() < 0.03) solver->advance(0.03);
+    const auto film = [&](std::size_t a, std::size_t b) {
+        return shared_film(solver->coarse(), solver->geometry(), 4, a)[b] / (std::numbers::pi * 0.02 * 0.02);
+    };
+    EXPECT_GT(film(0, 3), 0.3);
+    EXPECT_EQ(film(1, 2), 0.0);
+    for (const std::int32_t side : {1, 2}) {
+        const Vec3 place = border_of(*solver, 0, 3, side);
+        const std::int32_t ring[] = {0, 3, side, 0, 3};
+        for (int k = 0; k < 3; ++k) {
+            const double angle = 180.0 / std::numbers::pi *
+                                 std::acos(dot(film_normal(*solver, ring[k], ring[k + 1], place),
+                                               film_normal(*solver, ring[k + 1], ring[k + 2], place)));
+            std::printf("border with bubble %d: %.2f degrees\n", side, angle);
+            EXPECT_NEAR(angle, 120.0, 3.0);
+        }
     }
 }
 
