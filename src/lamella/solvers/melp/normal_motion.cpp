@@ -1,14 +1,11 @@
 #include "lamella/solvers/melp/normal_motion.h"
 
 #include "lamella/core/parallel.h"
-#include "lamella/linalg/dense.h"
 #include "lamella/solvers/melp/films.h"
+#include "lamella/solvers/melp/free_clusters.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
-#include <utility>
 
 namespace lamella::melp {
 
@@ -138,157 +135,6 @@ std::vector<double> forces(const NormalProblem& p, const Pairs& pairs, const std
     return force;
 }
 
-/// For each region the smallest one of the cluster it belongs to by contact.
-std::vector<std::size_t> clusters(const NormalProblem& p) {
-    std::vector<std::size_t> cluster(p.gas.size());
-    std::iota(cluster.begin(), cluster.end(), std::size_t{0});
-    const auto root = [&](std::size_t r) {
-        while (cluster[r] != r) r = cluster[r];
-        return r;
-    };
-    const Neighbors& other = p.geometry.neighbors.other;
-    for (std::size_t i = 0; i < p.coarse.size(); ++i)
-        for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
-            const std::size_t a = root(region_of(p.coarse, i)), b = root(region_of(p.coarse, other.index[k]));
-            cluster[std::max(a, b)] = std::min(a, b);
-        }
-    for (std::size_t& r : cluster) r = root(r);
-    return cluster;
-}
-
-constexpr std::size_t kRigid = 6;
-/// A force and its moment over a length.
-using Rigid = std::array<double, kRigid>;
-
-/// Directions of forces and moments.
-std::vector<Rigid> all_directions() {
-    std::vector<Rigid> all(kRigid);
-    for (std::size_t a = 0; a < kRigid; ++a) all[a][a] = 1.0;
-    return all;
-}
-
-/// Those in which half a bubble on a plate can slide and turn; those in which its gas does not push it, too: only along
-/// the plate's normal does the plate take part of the push.
-enum class OnPlate { kSlides, kGas };
-std::vector<Rigid> directions_on(const Vec3& plate_normal, OnPlate what) {
-    const Frame f = frame_of(plate_normal);
-    std::vector<Rigid> directions;
-    const auto add = [&](const Vec3& e, std::size_t at) {
-        Rigid d{};
-        for (std::size_t k = 0; k < 3; ++k) d[at + k] = e[k];
-        directions.push_back(d);
-    };
-    add(f.e1, 0);
-    add(f.e2, 0);
-    add(f.normal, 3);
-    if (what == OnPlate::kSlides) return directions;
-    add(f.e1, 3);
-    add(f.e2, 3);
-    return directions;
-}
-
-/// What holds a region; nothing for one that flies.
-const RimPiece* rim_of(const NormalProblem& p, std::size_t region) {
-    for (const RimPiece& rim : p.rims)
-        if (static_cast<std::size_t>(rim.region) == region) return &rim;
-    return nullptr;
-}
-
-/// Bubbles that touch, free of rims: films push and twist them by nothing as a whole. Forces that have lost their part
-/// along the film do, a little. [method sheet 16.4 c'] Half a bubble on a plate is free in some directions.
-class FreeCluster {
-public:
-    FreeCluster(const NormalProblem& p, std::vector<std::size_t> members, std::vector<Rigid> directions)
-        : p_(p), members_(std::move(members)), directions_(std::move(directions)) {
-        for (const std::size_t i : members_) {
-            center_ += p.geometry.area[i] * p.coarse.position[i];
-            length_ += p.geometry.area[i];
-        }
-        center_ = center_ / length_;
-        length_ = std::sqrt(length_);
-    }
-
-    /// Takes from values along the normals what pushes and twists: of all changes share_i e_i . z, with e_i the rigid
-    /// motions along the normal, the one after which sum_i (values_i n_i + beside_i) has no resultant and no moment.
-    void remove_resultant(std::vector<double>& values,
-                          std::span<const Vec3> beside,
-                          std::span<const double> share) const {
-        const std::size_t count = directions_.size();
-        std::vector<double> matrix(count * count, 0.0), resultant(count, 0.0);
-        for (const std::size_t i : members_) {
-            const std::vector<double> e = rigid(i, p_.geometry.normal[i]);
-            const std::vector<double> f = rigid(i, values[i] * p_.geometry.normal[i] + beside[i]);
-            for (std::size_t a = 0; a < count; ++a) {
-                resultant[a] += f[a];
-                for (std::size_t b = 0; b < count; ++b) matrix[a * count + b] += share[i] * e[a] * e[b];
-            }
-        }
-        // A sphere cannot be twisted by forces along its normals: such directions stay as they are.
-        constexpr double kCannot = 1e-4;
-        const auto z = linalg::solve_symmetric(count, matrix, resultant, kCannot).x;
-        for (const std::size_t i : members_) {
-            const std::vector<double> e = rigid(i, p_.geometry.normal[i]);
-            for (std::size_t a = 0; a < count; ++a) values[i] -= share[i] * e[a] * z[a];
-        }
-    }
-
-private:
-    /// A vector at a particle and its moment about the center, over the cluster's size, in the cluster's directions.
-    std::vector<double> rigid(std::size_t i, const Vec3& f) const {
-        const Vec3 moment = cross(p_.coarse.position[i] - center_, f) / length_;
-        const Rigid all{f[0], f[1], f[2], moment[0], moment[1], moment[2]};
-        std::vector<double> along(directions_.size(), 0.0);
-        for (std::size_t d = 0; d < along.size(); ++d)
-            for (std::size_t a = 0; a < kRigid; ++a) along[d] += directions_[d][a] * all[a];
-        return along;
-    }
-
-    const NormalProblem& p_;
-    std::vector<std::size_t> members_;
-    std::vector<Rigid> directions_;
-    Vec3 center_;
-    double length_ = 0.0;
-};
-
-std::vector<FreeCluster> free_clusters(const NormalProblem& p) {
-    const std::vector<std::size_t> cluster_of = clusters(p);
-    std::vector<std::vector<std::size_t>> members(p.gas.size());
-    for (std::size_t i = 0; i < p.coarse.size(); ++i) members[cluster_of[region_of(p.coarse, i)]].push_back(i);
-    std::vector<FreeCluster> free;
-    for (std::vector<std::size_t>& group : members) {
-        if (group.empty()) continue;
-        const RimPiece* rim = nullptr;
-        for (const std::size_t i : group)
-            if (p.gas[region_of(p.coarse, i)].held) rim = rim_of(p, region_of(p.coarse, i));
-        const bool torn =
-            std::any_of(group.begin(), group.end(), [&](std::size_t i) { return p.gas[region_of(p.coarse, i)].burst; });
-        if (torn) continue;
-        if (rim == nullptr)
-            free.emplace_back(p, std::move(group), all_directions());
-        else if (rim->kind == RimKind::kPlate)
-            free.emplace_back(p, std::move(group), directions_on(rim->b, OnPlate::kSlides));
-    }
-    return free;
-}
-
-/// The areas that gas pushes on [m^2]. Those of a closed bubble push it nowhere and do not turn it, so that it flies
-/// and turns without a change of volume. Sums over particles know that to a thousandth, but gas at one atmosphere moves
-/// a bubble by what is left. What is taken off comes from folds, but is taken off everywhere: on folds alone caps and
-/// partitions are as curved as their pressures say, to 1 % and not 2 to 6, but three bubbles meet at 115 degrees.
-std::vector<double> gas_areas(const NormalProblem& p) {
-    std::vector<double> area = p.geometry.area;
-    const std::vector<Vec3> nothing(area.size());
-    std::vector<std::vector<std::size_t>> members(p.gas.size());
-    for (std::size_t i = 0; i < area.size(); ++i) members[region_of(p.coarse, i)].push_back(i);
-    for (std::size_t r = 0; r < members.size(); ++r) {
-        if (!p.gas[r].closed || p.gas[r].burst || members[r].empty()) continue;
-        const RimPiece* rim = rim_of(p, r);
-        auto directions = rim == nullptr ? all_directions() : directions_on(rim->b, OnPlate::kGas);
-        FreeCluster(p, std::move(members[r]), std::move(directions)).remove_resultant(area, nothing, p.geometry.area);
-    }
-    return area;
-}
-
 /// How forces of tension and cohesion change with velocities along the normals.
 class FilmStiffness {
 public:
@@ -358,8 +204,8 @@ std::vector<double> growth(const NormalProblem& p, const std::vector<double>& ga
 NormalStep move_along_normals(const NormalProblem& p) {
     const std::size_t count = p.coarse.size();
     const Pairs pairs = pair_strengths(p);
-    const std::vector<FreeCluster> free = free_clusters(p);
-    const std::vector<double> gas_area = gas_areas(p);
+    const std::vector<FreeCluster> free = free_clusters(p.coarse, p.geometry, p.gas, p.rims);
+    const std::vector<double> gas_area = gas_areas(p.coarse, p.geometry, p.gas, p.rims);
     std::vector<double> force = forces(p, pairs, gas_area);
     std::vector<Vec3> beside(p.internal.begin(), p.internal.end());
     for (std::size_t i = 0; p.floating && i < count; ++i) beside[i] += p.external[i];

@@ -67,7 +67,7 @@ struct Options {
     double damping = 0.0;
     double shape_damping = 0.0;
     double grid_filter = 0.1;
-    double junction_correction = 0.3;
+    double junction_correction = 0.17;
     bool joining = true;
     double joining_delay = 0.0;
     bool redistribution = true;

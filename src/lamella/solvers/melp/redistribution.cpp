@@ -33,10 +33,13 @@ std::vector<double> excess(const Geometry& g, const CoarseParticles& coarse, std
 std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, double reach) {
     const Neighbors& same = g.neighbors.same;
     const std::size_t count = g.size();
-    std::vector<double> right(count), scale(count), diagonal(count);
+    std::vector<double> right(count), scale(count), diagonal(count), pair(same.index.size());
     parallel_for(count, [&](std::size_t i) {
         double sum = 0.0;
-        for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum += g.area[same.index[k]] * same.laplacian[k];
+        for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
+            pair[k] = g.area[same.index[k]] * same.laplacian[k];
+            sum += pair[k];
+        }
         diagonal[i] = g.area[i] * (1.0 + reach * sum);
         scale[i] = 1.0 / diagonal[i];
         right[i] = g.area[i] * q[i];
@@ -45,8 +48,7 @@ std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, do
         y.resize(count);
         parallel_for(count, [&](std::size_t i) {
             double sum = 0.0;
-            for (std::size_t k = same.begin(i); k < same.end(i); ++k)
-                sum += g.area[same.index[k]] * same.laplacian[k] * x[same.index[k]];
+            for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum += pair[k] * x[same.index[k]];
             y[i] = diagonal[i] * x[i] - reach * g.area[i] * sum;
         });
     };

@@ -20,26 +20,28 @@ Triangle turned(Triangle t) {
     return t;
 }
 
-/// The neighbors of particle i that its Voronoi cell in the tangent plane touches, in turn: the cell is cut out of a
-/// large square by the bisectors of one neighbor after the other.
-std::vector<std::uint32_t> delaunay_ring(std::span<const Vec3> position,
-                                         const Vec3& normal,
-                                         const Neighbors& same,
-                                         std::size_t i) {
-    struct Corner {
-        double u, v;
-        std::uint32_t next;  // whose bisector the side after this corner lies on
-    };
+/// A corner of a Voronoi cell in the tangent plane of its particle.
+struct Corner {
+    double u, v;
+    std::uint32_t next;  // whose bisector the side after this corner lies on
+};
+
+/// The Voronoi cell of particle i among its neighbors, laid into its tangent plane: it is cut out of a large square by
+/// the bisectors of one neighbor after the other.
+std::vector<Corner> voronoi_cell(std::span<const Vec3> position,
+                                 const Vec3& normal,
+                                 const Neighbors& same,
+                                 std::size_t i) {
     const double far = same.kernel.support_radius;
     std::vector<Corner> cell{{-far, -far, kNobody}, {far, -far, kNobody}, {far, far, kNobody}, {-far, far, kNobody}},
         cut;
     const Frame frame = frame_of(normal);
-    for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
-        const Vec3 d = position[same.index[k]] - position[i];
-        const double u = dot(frame.e1, d), v = dot(frame.e2, d), half = 0.5 * (u * u + v * v);
+    double farthest = 2.0 * far * far;  // corner, squared
+    const auto cut_off = [&](std::uint32_t j, double u, double v) {
+        const double half = 0.5 * (u * u + v * v);
+        if (half == 0.0 || half > 2.0 * farthest) return;  // its bisector passes beyond all corners
         const auto beyond = [&](const Corner& c) { return c.u * u + c.v * v - half; };
-        if (half == 0.0 || std::none_of(cell.begin(), cell.end(), [&](const Corner& c) { return beyond(c) > 0.0; }))
-            continue;
+        if (std::none_of(cell.begin(), cell.end(), [&](const Corner& c) { return beyond(c) > 0.0; })) return;
         cut.clear();
         for (std::size_t c = 0; c < cell.size(); ++c) {
             const Corner& a = cell[c];
@@ -50,13 +52,30 @@ std::vector<std::uint32_t> delaunay_ring(std::span<const Vec3> position,
                 return Corner{a.u + s * (b.u - a.u), a.v + s * (b.v - a.v), next};
             };
             if (at_a <= 0.0) cut.push_back(a);
-            if (at_a <= 0.0 && at_b > 0.0) cut.push_back(crossing(same.index[k]));
+            if (at_a <= 0.0 && at_b > 0.0) cut.push_back(crossing(j));
             if (at_a > 0.0 && at_b <= 0.0) cut.push_back(crossing(a.next));
         }
         cell.swap(cut);
-    }
+        farthest = 0.0;
+        for (const Corner& c : cell) farthest = std::max(farthest, c.u * c.u + c.v * c.v);
+    };
+    // Near ones first: few of the others touch what they leave.
+    const double near = 0.5 * far;
+    for (const bool nearer : {true, false})
+        for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
+            const Vec3 d = position[same.index[k]] - position[i];
+            if ((squared_norm(d) < near * near) == nearer) cut_off(same.index[k], dot(frame.e1, d), dot(frame.e2, d));
+        }
+    return cell;
+}
+
+/// The neighbors that the cell touches, in turn.
+std::vector<std::uint32_t> delaunay_ring(std::span<const Vec3> position,
+                                         const Vec3& normal,
+                                         const Neighbors& same,
+                                         std::size_t i) {
     std::vector<std::uint32_t> ring;
-    for (const Corner& c : cell) ring.push_back(c.next);
+    for (const Corner& c : voronoi_cell(position, normal, same, i)) ring.push_back(c.next);
     return ring;
 }
 
@@ -151,6 +170,16 @@ double star_volume(const CoarseParticles& coarse, const Geometry& geometry, std:
         sum += dot(x[i] - center, area) / 3.0 + norm(area) * bulge / 24.0;
     }
     return sum / 3.0;
+}
+
+double cell_area(const CoarseParticles& coarse, const Geometry& geometry, std::size_t i) {
+    const std::vector<Corner> cell = voronoi_cell(coarse.position, geometry.normal[i], geometry.neighbors.same, i);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < cell.size(); ++k) {
+        const Corner& b = cell[(k + 1) % cell.size()];
+        sum += cell[k].u * b.v - cell[k].v * b.u;
+    }
+    return 0.5 * sum;
 }
 
 std::size_t open_edges(const Triangles& triangles) {

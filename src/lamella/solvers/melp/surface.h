@@ -29,4 +29,8 @@ std::size_t open_edges(const Triangles& triangles);
 /// plane. Right at folds too, where areas from kernels are not.
 double star_volume(const CoarseParticles& coarse, const Geometry& geometry, std::size_t i, const Vec3& center);
 
+/// Area of the Voronoi cell of particle i among its neighbors, in its tangent plane [m^2]: how fast the volume under it
+/// grows along its normal. Right at folds too, and steady when triangles change.
+double cell_area(const CoarseParticles& coarse, const Geometry& geometry, std::size_t i);
+
 }  // namespace lamella::melp
