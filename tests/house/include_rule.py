@@ -45,7 +45,7 @@ LIBRARIES = {
     r"HYPRE": ["linalg"],
     r"mpi\.h": ["dist", "linalg"],
     r"hdf5": ["io"],
-    r"H5[A-Za-z]*public\.h": ["io"],
+    r"H5[A-Za-z]*(public|develop)\.h": ["io"],
     r"zlib\.h": ["io"],
     r"png\.h": ["io"],
     r"Imf[A-Za-z]*\.h|OpenEXR/": ["io"],

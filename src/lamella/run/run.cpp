@@ -22,9 +22,7 @@ struct Resumption {
     std::string note;  ///< what is worth telling, or ""
 };
 
-Device device_of(const RunSettings& settings) {
-    return settings.device == "cuda" ? Device::kCuda : Device::kCpu;
-}
+Device device_of(const RunSettings& settings) { return settings.device == "cuda" ? Device::kCuda : Device::kCpu; }
 
 /// Whether this process only follows another.
 bool follows(const RunSettings& settings) { return settings.processes && settings.processes->rank() > 0; }
@@ -66,8 +64,8 @@ RunResult run_scene(const scene::Scene& scene,
     // What can be wrong with the input is found before anything is written.
     auto solver = team.create(make);
     const std::string resolved = scene::resolved_toml(scene, registry, scene::FileNames::kCopies);
-    // A run keeps copies of the films it starts from, so that it can be resumed and repeated wherever it is. They are read
-    // before the folder is cleared: they may be in it.
+    // A run keeps copies of the films it starts from, so that it can be resumed and repeated wherever it is. They are
+    // read before the folder is cleared: they may be in it.
     std::vector<std::pair<std::string, std::string>> copies;
     for (const scene::InputFile& file : scene::film_files(scene))
         copies.emplace_back(file.name, io::film_file_contents(file.path));

@@ -1,11 +1,5 @@
 #include "lamella/solvers/bubble/bubble_solver.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-
-#include <fmt/format.h>
-
 #include "lamella/core/error.h"
 #include "lamella/core/fixed_sum.h"
 #include "lamella/core/parallel.h"
@@ -15,6 +9,12 @@
 #include "lamella/solvers/bubble/relax.h"
 #include "lamella/solvers/bubble/removal.h"
 #include "lamella/solvers/bubble/start.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace lamella::bubble {
 namespace {
@@ -32,19 +32,23 @@ void check_together(const Options& o, const sim::Node& given) {
     };
     if (o.time_unit == TimeUnit::kScaled && o.gas.exchange_rate == 0.0)
         fail("gas", "exchange_rate",
-             "bubble.gas.exchange_rate = 0 stops the scaled time tau = K t/<R_in>^2; set bubble.time_unit = \"mechanical\"");
+             "bubble.gas.exchange_rate = 0 stops the scaled time tau = K t/<R_in>^2; set bubble.time_unit = "
+             "\"mechanical\"");
     if (o.gas.medium_scaling == MediumScaling::kLsw && o.dimension != 3)
         fail("gas", "medium_scaling",
              "bubble.gas.medium_scaling = \"lsw\" is diffusion around spheres and needs bubble.dimension = 3; in 2D use"
              " \"radius\"");
     if (o.start.packing == Packing::kFile && o.start.file.empty())
-        fail("start", "packing", "bubble.start.packing = \"file\" needs bubble.start.file, a CSV file with x, y, z, radius");
+        fail("start", "packing",
+             "bubble.start.packing = \"file\" needs bubble.start.file, a CSV file with x, y, z, radius");
     for (std::size_t k = 0; k < static_cast<std::size_t>(o.dimension); ++k)
         if ((o.start.file_box[k] > 0.0) != (o.start.file_box[0] > 0.0))
-            fail("start", "file_box", "bubble.start.file_box has edges that are 0 and edges that are not; give all or none");
+            fail("start", "file_box",
+                 "bubble.start.file_box has edges that are 0 and edges that are not; give all or none");
     if (o.flow.kind == FlowKind::kShear && !o.walls[1])
-        fail("flow", "kind", "bubble.flow.kind = \"shear\" has its gradient along y and needs walls there:"
-                             " bubble.walls = [false, true, false]");
+        fail("flow", "kind",
+             "bubble.flow.kind = \"shear\" has its gradient along y and needs walls there:"
+             " bubble.walls = [false, true, false]");
     if (o.flow.kind == FlowKind::kRegion)
         for (std::size_t k = 0; k < static_cast<std::size_t>(o.dimension); ++k)
             if (o.flow.region_low[k] > o.flow.region_high[k])
@@ -54,7 +58,8 @@ void check_together(const Options& o, const sim::Node& given) {
     const bool published = o.compat.clock || o.compat.step_control != StepControl::kDefault;
     if (published && o.integrator.method != Method::kAbm2)
         fail("compat", o.compat.clock ? "clock" : "step_control",
-             "bubble.compat.clock and step_control belong to the published scheme; set bubble.integrator.method = \"abm2\"");
+             "bubble.compat.clock and step_control belong to the published scheme; set bubble.integrator.method = "
+             "\"abm2\"");
 }
 
 std::vector<GivenBubble> read_bubbles(const Options& o, const sim::SolverInput& input) {
@@ -80,8 +85,9 @@ std::vector<GivenBubble> read_bubbles(const Options& o, const sim::SolverInput& 
         const bool good = std::isfinite(row[radius]) && row[radius] > 0.0 &&
                           std::all_of(axes.begin(), axes.end(), [&](std::size_t a) { return std::isfinite(row[a]); });
         if (!good)
-            throw InputError({o.start.file, static_cast<int>(i) + 2, 0},
-                             fmt::format("a bubble needs a finite position and a radius above 0; radius is {}", row[radius]));
+            throw InputError(
+                {o.start.file, static_cast<int>(i) + 2, 0},
+                fmt::format("a bubble needs a finite position and a radius above 0; radius is {}", row[radius]));
     }
     return given;
 }
@@ -90,10 +96,13 @@ std::vector<GivenBubble> read_bubbles(const Options& o, const sim::SolverInput& 
 
 template <int D>
 BubbleSolver<D>::BubbleSolver(const Options& options, const sim::SolverInput& input)
-    : options_(options), input_(input), domain_(input.processes ? *input.processes : static_cast<dist::Communicator&>(alone_)) {
+    : options_(options),
+      input_(input),
+      domain_(input.processes ? *input.processes : static_cast<dist::Communicator&>(alone_)) {
     check_together(options, input.options);
     if (input.device != Device::kCpu && domain_.several())
-        throw InputError(input.options.where, "several processes compute on CPUs only; use --device cpu, or one process");
+        throw InputError(input.options.where,
+                         "several processes compute on CPUs only; use --device cpu, or one process");
     if (input.device != Device::kCpu)
         if (const std::string what = detail::not_on_device(options); !what.empty())
             throw InputError(input.options.where, what + " does not run on a GPU; use --device cpu");
@@ -148,9 +157,8 @@ void BubbleSolver<D>::start(const sim::StartContext& context) {
 template <int D>
 void BubbleSolver<D>::take_to_device() {
     if (input_.device == Device::kCpu) return;
-    device_ = input_.device == Device::kCuda
-                  ? detail::make_cuda_runner<D>(options_)
-                  : detail::make_twin_runner<D>(options_, HostMachine::Order::kShuffled);
+    device_ = input_.device == Device::kCuda ? detail::make_cuda_runner<D>(options_)
+                                             : detail::make_twin_runner<D>(options_, HostMachine::Order::kShuffled);
     device_->upload(system_->foam, system_->model, clock_, integrator_->state());
     observed_ = true;
 }
@@ -186,7 +194,8 @@ sim::StepReport BubbleSolver<D>::advance_on_device(double time_limit) {
     clock_ = control.clock;
     largest_size_ = control.max_size;
     for (const detail::VanishedBubble<D>& bubble : device_->take_vanished()) {
-        sim::Event event{.time = bubble.time, .kind = "remove", .position = {}, .detail = fmt::format("bubble {}", bubble.id)};
+        sim::Event event{
+            .time = bubble.time, .kind = "remove", .position = {}, .detail = fmt::format("bubble {}", bubble.id)};
         for (std::size_t k = 0; k < D; ++k) event.position[k] = bubble.position[k];
         events_.push_back(std::move(event));
     }
@@ -217,9 +226,8 @@ void BubbleSolver<D>::remember_start() {
     model.largest_count = static_cast<double>(start_count_);
     model.initial_mean_radius = system_->mean_radius();
     model.initial_mean_surface = domain_.exact_sum(foam.slots, [&](std::size_t i) {
-                                     return Shape<D>::surface(Shape<D>::radius(foam.size[i]));
-                                 }) /
-                                 model.largest_count;
+        return Shape<D>::surface(Shape<D>::radius(foam.size[i]));
+    }) / model.largest_count;
 }
 
 template <int D>

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <vector>
-
 #include "lamella/sim/registry.h"
 #include "lamella/sim/solver.h"
 #include "lamella/solvers/bubble/clock.h"
@@ -10,6 +7,9 @@
 #include "lamella/solvers/bubble/integrator.h"
 #include "lamella/solvers/bubble/options.h"
 #include "lamella/solvers/bubble/system.h"
+
+#include <memory>
+#include <vector>
 
 namespace lamella::bubble {
 
@@ -74,12 +74,13 @@ private:
     std::unique_ptr<System<D>> system_;
     std::unique_ptr<Integrator<D>> integrator_;
 
-    /// Takes the steps instead of the integrator; empty on the CPU. What leaves the solver is taken from system_ there too.
+    /// Takes the steps instead of the integrator; empty on the CPU. What leaves the solver is taken from system_ there
+    /// too.
     std::unique_ptr<detail::DeviceRunner<D>> device_;
     mutable bool observed_ = true;  ///< system_ is up to date with it
 
     Clock clock_;
-    double start_gas_ = 0.0;     ///< sum of q at the start
+    double start_gas_ = 0.0;  ///< sum of q at the start
     std::int64_t start_count_ = 0;
     double largest_size_ = 0.0;  ///< q of the largest bubble
     std::vector<sim::Event> events_;

@@ -1,11 +1,11 @@
-#include <algorithm>
-#include <cmath>
-
 #include "lamella/core/parallel.h"
 #include "lamella/core/simd.h"
 #include "lamella/solvers/bubble/contact.h"
 #include "lamella/solvers/bubble/gas_sums.h"
 #include "lamella/solvers/bubble/rates.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace lamella::bubble {
 namespace {
@@ -46,7 +46,8 @@ double contacts_of_group(std::size_t group,
         Simd separation[D];
         for (std::size_t k = 0; k < D; ++k) {
             separation[k] = position[k] - gather_lanes(stage.position[k].data(), other);
-            const Simd image = kImages ? load_lanes(&neighbors.image[k][e]) : nearest(separation[k] * inverse_lengths[k]);
+            const Simd image =
+                kImages ? load_lanes(&neighbors.image[k][e]) : nearest(separation[k] * inverse_lengths[k]);
             separation[k] -= box.lengths[k] * image;
         }
         Simd other_inverse = 0.0;
@@ -156,9 +157,23 @@ Evaluation contact_pass(const Model& model,
     return result;
 }
 
-template Evaluation contact_pass<2>(const Model&, const PeriodicBox<2>&, const NeighborList<2>&, const Stage<2>&,
-                                    Gas, Stiffness, Domain&, std::size_t, Rates<2>&);
-template Evaluation contact_pass<3>(const Model&, const PeriodicBox<3>&, const NeighborList<3>&, const Stage<3>&,
-                                    Gas, Stiffness, Domain&, std::size_t, Rates<3>&);
+template Evaluation contact_pass<2>(const Model&,
+                                    const PeriodicBox<2>&,
+                                    const NeighborList<2>&,
+                                    const Stage<2>&,
+                                    Gas,
+                                    Stiffness,
+                                    Domain&,
+                                    std::size_t,
+                                    Rates<2>&);
+template Evaluation contact_pass<3>(const Model&,
+                                    const PeriodicBox<3>&,
+                                    const NeighborList<3>&,
+                                    const Stage<3>&,
+                                    Gas,
+                                    Stiffness,
+                                    Domain&,
+                                    std::size_t,
+                                    Rates<3>&);
 
 }  // namespace lamella::bubble

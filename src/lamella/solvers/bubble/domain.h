@@ -1,17 +1,17 @@
 #pragma once
 
+#include "lamella/core/aligned.h"
+#include "lamella/core/fixed_sum.h"
+#include "lamella/dist/communicator.h"
+#include "lamella/dist/halo.h"
+#include "lamella/dist/sum.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <tuple>
 #include <utility>
-
-#include "lamella/core/aligned.h"
-#include "lamella/core/fixed_sum.h"
-#include "lamella/dist/communicator.h"
-#include "lamella/dist/halo.h"
-#include "lamella/dist/sum.h"
 
 namespace lamella::bubble {
 
