@@ -58,6 +58,7 @@ Films films_of(const Geometry& geometry,
         if (even[r].held) drift[r] = {};
     Films films;
     films.liquid_volume.resize(count);
+    films.dry.resize(count);
     films.thickness.resize(count);
     films.seen_thickness.resize(count);
     films.concentration.resize(count);
@@ -70,6 +71,7 @@ Films films_of(const Geometry& geometry,
         const double share = evenly ? a / area[r] : 0.0;
         const double volume = evenly ? share * even[r].liquid_volume : gathered.liquid_volume[e];
         const double thinnest = kThinnest * (evenly ? even[r].liquid_volume : liquid[r]) / area[r];
+        films.dry[e] = volume < thinnest * a ? 1 : 0;
         films.liquid_volume[e] = std::max(volume, thinnest * a);
         films.thickness[e] = films.liquid_volume[e] / a;
         films.concentration[e] = (evenly ? share * even[r].surfactant : gathered.surfactant[e]) / a;

@@ -4,6 +4,7 @@
 #include "lamella/solvers/melp/geometry.h"
 #include "lamella/solvers/melp/transfer.h"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct Films {
     std::vector<double> concentration;   ///< of surfactant, per interface [mol/m^2]
     std::vector<double> tension;         ///< of one interface [N/m]
     std::vector<Vec3> along;             ///< velocity along the film [m/s]
+    std::vector<std::uint8_t> dry;       ///< 1: hardly a fine particle reaches it
 
     std::size_t size() const { return thickness.size(); }
 };

@@ -101,7 +101,7 @@ void gather_on_border(const CoarseParticles& coarse,
         if (!is_of(fine.region[p], a) && !is_of(fine.region[p], b)) continue;
         // The nearest of all, and the nearest that stays, farther and farther out.
         double nearest = std::numeric_limits<double>::infinity();
-        bool lost = false;
+        std::uint32_t own = 0;
         std::optional<std::uint32_t> stays;
         double distance = nearest;
         for (double reach = 2.0 * spacing; !stays && reach < 1e3 * spacing; reach *= 2.0)
@@ -110,16 +110,20 @@ void gather_on_border(const CoarseParticles& coarse,
                 const double square = squared_norm(coarse.position[i] - fine.position[p]);
                 if (square < nearest) {
                     nearest = square;
-                    lost = marked[i] != 0;
+                    own = i;
                 }
                 if (marked[i] == 0 && square < distance) {
                     distance = square;
                     stays = i;
                 }
             });
-        if (!lost || !stays) continue;
-        fine.position[p] = coarse.position[*stays];
-        fine.normal[p] = coarse.frame_normal[*stays];
+        if (nearest == std::numeric_limits<double>::infinity() || marked[own] == 0 || !stays) continue;
+        // Beside the one that stays as they lay beside their own: on one spot they would never part again, and their
+        // surfactant would drive a flow away from there without end.
+        const Vec3& normal = coarse.frame_normal[*stays];
+        const Vec3 beside = fine.position[p] - coarse.position[own];
+        fine.position[p] = coarse.position[*stays] + beside - dot(beside, normal) * normal;
+        fine.normal[p] = normal;
     }
 }
 

@@ -37,8 +37,8 @@ std::vector<std::uint8_t> hand_over(const CoarseParticles& coarse,
                                     std::size_t r,
                                     FineParticles& fine);
 
-/// Puts fine particles of the regions a and b that lie within a spacing of a marked coarse particle, and of none that
-/// stays, where the nearest that stays is: the liquid of a partition that bursts goes to its border.
+/// Puts fine particles of the regions a and b whose nearest coarse particle is marked beside the nearest that stays:
+/// the liquid of a partition that bursts goes to its border.
 void gather_on_border(const CoarseParticles& coarse,
                       const std::vector<std::uint8_t>& marked,
                       std::size_t a,

@@ -51,13 +51,18 @@ void MelpSolver::pull_edges(double dt) {
     for (std::size_t i = 0; i < coarse_.size(); ++i) coarse_.velocity[i] += dt * pull[i];
 }
 
-/// Edges gather coarse particles as they gather liquid: those too many go. What is left of a film that hardly has any
-/// breaks up into drops.
+/// Edges gather coarse particles as they gather liquid: those too many go, and those that have lost their liquid to
+/// others. Shreds and the last bit of a film break up into drops: the gas would blow away what nothing holds.
 void MelpSolver::clear_edges() {
     if (!any_burst()) return;
-    constexpr std::size_t kFewest = 8;
+    constexpr std::size_t kFewest = 8, kShred = 4;  // particles; neighbors: a thread has six
+    const Neighbors& same = geometry_.neighbors.same;
     auto marked = crowded(geometry_, coarse_, edge_strength(geometry_, coarse_), burst_regions(), spacing_);
     std::vector<std::size_t> left(gas_.size(), 0);
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        if (!gas_[static_cast<std::size_t>(coarse_.region[i])].burst) continue;
+        if (films_.dry[i] != 0 || same.end(i) - same.begin(i) < kShred) marked[i] = 1;
+    }
     for (std::size_t i = 0; i < coarse_.size(); ++i) left[static_cast<std::size_t>(coarse_.region[i])] += 1 - marked[i];
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         const auto r = static_cast<std::size_t>(coarse_.region[i]);

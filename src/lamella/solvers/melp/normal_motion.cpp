@@ -253,7 +253,7 @@ NormalStep move_along_normals(const NormalProblem& p) {
         step.velocity[i] = (given[i] + added[i]) / inertia[i];
         step.mean[i] = p.theta * step.velocity[i] + (1.0 - p.theta) * p.velocity[i];
     }
-    step.swept = growth(p, gas_area, step.mean);
+    step.swept = growth(p, gas_area, step.velocity);
     for (double& volume : step.swept) volume *= p.dt;
     return step;
 }

@@ -49,10 +49,11 @@ struct NormalStep {
 ///   (J_film v)_i = sum_j c_ij (v_j - n_i . n_j v_i),   c_ij = (tau_i + tau_j) / 2 a_i a_j omega_ij,
 ///
 /// and that of each gas, -(p / V) b b^T with the areas b that it pushes on, always fully implicit: the breathing of
-/// bubbles is far faster than any step. The cosine lets a film move as a whole without resistance: v = U . n changes no
-/// force where particles are evenly spread. It stands for the |kappa|^2 of the sheet, sum c (1 - n_i . n_j) = tau a
-/// |kappa|^2 in the limit; with curvatures from patches, right to half a percent, a flying bubble gained 0.017 % of its
-/// speed per millisecond.
+/// bubbles is far faster than any step. What v1 sweeps is what it grows by, so that its pressure is in balance after
+/// every step, also where theta or dt change. The cosine lets a film move as a whole without resistance: v = U . n
+/// changes no force where particles are evenly spread. It stands for the |kappa|^2 of the sheet, sum c (1 - n_i . n_j)
+/// = tau a |kappa|^2 in the limit; with curvatures from patches, right to half a percent, a flying bubble gained 0.017
+/// % of its speed per millisecond.
 ///
 /// Regions cohere where their films touch [method sheet 16.4, eq. 11]: two films have the tension of one in common, and
 /// meet a third at 120 degrees. Internal forces, `internal` along the film counted, neither push nor twist a free
