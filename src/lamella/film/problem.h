@@ -127,6 +127,12 @@ struct Problem {
     std::vector<Solid> solids;
     std::vector<Wall> walls;
     std::vector<Release> releases;  ///< in order of time
+
+    /// Closed regions, those that faucets let in counted.
+    std::int64_t bubble_count() const {
+        return std::count_if(mesh.regions.begin(), mesh.regions.end(),
+                             [](const mesh::Region& r) { return r.kind == mesh::RegionKind::kClosed; });
+    }
 };
 
 }  // namespace lamella::film

@@ -9,7 +9,11 @@
 #include "lamella/mesh/shapes/power_cluster.h"
 #include "lamella/mesh/shapes/sphere.h"
 #include "lamella/mesh/shapes/standard_clusters.h"
+#include "lamella/scene/detail/attach_wires.h"
 #include "lamella/scene/detail/film_from_file.h"
+#include "lamella/scene/detail/obstacles.h"
+#include "lamella/scene/detail/releases.h"
+#include "lamella/scene/detail/table_place.h"
 #include "lamella/scene/detail/toml_writer.h"
 #include "lamella/sim/read_options.h"
 
@@ -22,6 +26,8 @@
 namespace lamella::scene {
 namespace {
 
+using detail::at_table;
+using detail::place;
 using mesh::FoamMesh;
 using mesh::RegionKind;
 
@@ -44,24 +50,6 @@ template <class Table>
 Table read_one(const sim::Node& root, std::string_view name) {
     const sim::Node* node = root.find(name);
     return node != nullptr ? sim::read_options<Table>(*node, kSi) : Table{};
-}
-
-/// Where the k-th table of a list stands, for messages.
-SourceLocation place(const sim::Node& root, std::string_view name, std::size_t k) {
-    const sim::Node* node = root.find(name);
-    if (node == nullptr) return root.where;
-    const auto* items = node->array();
-    return items != nullptr && k < items->size() ? (*items)[k].where : node->where;
-}
-
-/// Calls make() and puts the place of a table before what it complains about.
-template <class Make>
-auto at_table(const SourceLocation& where, std::string_view name, Make&& make) {
-    try {
-        return make();
-    } catch (const InputError& error) {
-        throw InputError(where, fmt::format("{}: {}", name, error.what()));
-    }
 }
 
 mesh::Ball ball_of(const BubbleTable& bubble, const SourceLocation& where) {
@@ -181,7 +169,8 @@ std::vector<io::FilmFile> films_of_files(const FilmTables& tables, const sim::No
     return files;
 }
 
-double default_edge_length(const FilmTables& tables, const std::vector<mesh::Ball>& balls,
+double default_edge_length(const FilmTables& tables,
+                           const std::vector<mesh::Ball>& balls,
                            const std::vector<io::FilmFile>& files) {
     double edge = 0.0;
     const auto at_most = [&](double length) { edge = edge == 0.0 ? length : std::min(edge, length); };
@@ -206,8 +195,8 @@ film::Event event_of(const EventTable& event, const FoamMesh& mesh, const Source
         throw InputError(where, fmt::format("event.region = {} is no bubble; there are {} regions beside the outside",
                                             event.region, mesh.regions.size() - 1));
     if (event.into >= 0 && (kind_of(event.into) == RegionKind::kGone || (!random && event.into == event.region)))
-        throw InputError(where, fmt::format("event.into = {} is no region that bubble {} could join", event.into,
-                                            event.region));
+        throw InputError(
+            where, fmt::format("event.into = {} is no region that bubble {} could join", event.into, event.region));
     const auto region = random ? film::kRandomBubble : static_cast<mesh::RegionId>(event.region);
     const double first = random ? 0.0 : mesh.regions[region].target_volume;
     return {.kind = event.kind,
@@ -231,57 +220,6 @@ std::vector<film::Event> events_of(const FilmTables& tables, const FoamMesh& mes
     return events;
 }
 
-/// The point of a wire that is nearest to `x` [m].
-Vec3 nearest_on(const WireTable& wire, const Vec3& x) {
-    if (wire.shape == WireShape::kSegment) {
-        const Vec3 along = wire.to - wire.from;
-        const double s = std::clamp(dot(x - wire.from, along) / squared_norm(along), 0.0, 1.0);
-        return wire.from + s * along;
-    }
-    const Vec3 axis = wire.axis / norm(wire.axis);
-    Vec3 arm = x - wire.center;
-    arm -= dot(arm, axis) * axis;
-    const double length = norm(arm);
-    return length > 0.0 ? wire.center + (wire.radius / length) * arm : wire.center + Vec3{{1e300, 0.0, 0.0}};
-}
-
-film::Wire motion_of(const WireTable& wire) {
-    film::Wire motion;
-    motion.center = wire.shape == WireShape::kRing ? wire.center : 0.5 * (wire.from + wire.to);
-    motion.velocity = wire.velocity;
-    motion.spin = wire.spin;
-    motion.start = wire.start;
-    if (wire.end > 0.0) motion.end = wire.end;
-    if (wire.shape == WireShape::kRing) motion.ring = film::Wire::Ring{wire.axis / norm(wire.axis), wire.radius, wire.blow};
-    return motion;
-}
-
-/// Puts the films near a wire onto it, and notes which wire holds which vertex.
-void attach(film::Problem& problem, const WireTable& wire, const SourceLocation& where) {
-    if (wire.shape == WireShape::kRing && norm(wire.axis) == 0.0)
-        throw InputError(where, "wire.axis = [0, 0, 0] is no direction");
-    if (wire.shape == WireShape::kSegment && squared_norm(wire.to - wire.from) == 0.0)
-        throw InputError(where, "wire.from and wire.to are the same point");
-    if (wire.end > 0.0 && wire.end < wire.start)
-        throw InputError(where, fmt::format("wire.end = {} comes before wire.start = {}", wire.end, wire.start));
-    if (wire.blow != 0.0 && wire.shape != WireShape::kRing)
-        throw InputError(where, "wire.blow needs shape = \"ring\": air is blown through a ring");
-    const double reach = wire.reach > 0.0 ? wire.reach : 0.5 * problem.edge_length;
-    const auto number = static_cast<std::int32_t>(problem.wires.size());
-    problem.wires.push_back(motion_of(wire));
-    std::size_t held = 0;
-    for (const mesh::VertexId v : problem.mesh.position.ids()) {
-        const Vec3 on_wire = nearest_on(wire, problem.mesh.position[v]);
-        if (norm(on_wire - problem.mesh.position[v]) > reach) continue;
-        if (problem.mesh.on_wire[v] == 0) problem.mesh.position[v] = on_wire;
-        problem.mesh.on_wire[v] = 1;
-        problem.wire_of[v] = number;
-        ++held;
-    }
-    if (held == 0 && wire.blow == 0.0)
-        throw InputError(where, fmt::format("no film is within {:.3g} m of the wire; move it, or raise wire.reach", reach));
-}
-
 film::Vortex vortex_of(const VortexTable& vortex, const SourceLocation& where) {
     using Profile = film::Vortex::Profile;
     const bool core = vortex.profile == Profile::kGauss || vortex.profile == Profile::kTaylor;
@@ -290,54 +228,6 @@ film::Vortex vortex_of(const VortexTable& vortex, const SourceLocation& where) {
     film::Vortex ready = vortex;
     if (!core) ready.axis = vortex.axis / norm(vortex.axis);
     return ready;
-}
-
-film::Solid solid_of(const SolidTable& table, const SourceLocation& where) {
-    if (!(table.radius > 0.0)) throw InputError(where, "solid.radius is missing, e.g. \"5 cm\"");
-    if (table.end > 0.0 && table.end < table.start)
-        throw InputError(where, fmt::format("solid.end = {} comes before solid.start = {}", table.end, table.start));
-    if (table.period > 0.0 && !(table.end > table.start && table.end <= table.period))
-        throw InputError(where, fmt::format("solid.end = {} has to lie between solid.start = {} and solid.period = {}", table.end,
-                                            table.start, table.period));
-    if (table.period == 0.0 && norm(table.stride) > 0.0)
-        throw InputError(where, "solid.stride needs a solid.period, after which the next step begins");
-    if (table.free && (table.start > 0.0 || table.end > 0.0 || table.period > 0.0))
-        throw InputError(where, "a solid with free = true moves by itself; take start, end and period out");
-    if (!table.free && table.mass > 0.0) throw InputError(where, "solid.mass is read where free = true");
-    film::Solid solid{.center = table.center, .radius = table.radius, .velocity = table.velocity, .spin = table.spin, .start = table.start};
-    solid.period = table.period;
-    solid.stride = table.stride;
-    solid.free = table.free;
-    solid.mass = table.mass;
-    if (table.end > 0.0) solid.end = table.end;
-    return solid;
-}
-
-film::Wall wall_of(const WallTable& table, const SourceLocation& where) {
-    if (norm(table.normal) == 0.0) throw InputError(where, "wall.normal = [0, 0, 0] is no direction");
-    return {table.point, table.normal / norm(table.normal), table.bursts};
-}
-
-/// The bubbles that faucets let in: regions without faces behind those of the mesh, in order of time.
-void add_releases(film::Problem& problem, const FilmTables& tables, const sim::Node& root, std::uint64_t seed) {
-    for (std::size_t k = 0; k < tables.faucets.size(); ++k) {
-        const FaucetTable& faucet = tables.faucets[k];
-        if (!(faucet.radius > 0.0))
-            throw InputError(place(root, "faucet", k), "faucet.radius is missing: of its bubbles, e.g. \"1 cm\"");
-        for (int n = 0; n < faucet.count; ++n) {
-            const double u = uniform01(random_bits(seed, RandomStream::kFaucet, k, static_cast<std::uint64_t>(n)));
-            problem.releases.push_back({.time = faucet.start + n * faucet.interval,
-                                        .center = faucet.center,
-                                        .radius = faucet.radius * (1.0 + faucet.radius_spread * (2.0 * u - 1.0)),
-                                        .velocity = faucet.velocity});
-        }
-    }
-    std::stable_sort(problem.releases.begin(), problem.releases.end(),
-                     [](const auto& a, const auto& b) { return a.time < b.time; });
-    for (film::Release& release : problem.releases) {
-        release.region = static_cast<mesh::RegionId>(problem.mesh.regions.size());
-        problem.mesh.regions.push_back({RegionKind::kClosed, 4.0 / 3.0 * kPi * std::pow(release.radius, 3)});
-    }
 }
 
 /// The velocity that the scene gives to each of its bubbles; films and foams have none.
@@ -421,13 +311,15 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
     all.insert(all.end(), cluster.begin(), cluster.end());
     for (const FaucetTable& faucet : tables.faucets) all.push_back({faucet.center, faucet.radius});
     std::vector<io::FilmFile> files = films_of_files(tables, root);
-    problem.edge_length = tables.resolution.edge_length > 0.0 ? tables.resolution.edge_length
-                                                              : default_edge_length(tables, all, files);
+    problem.edge_length =
+        tables.resolution.edge_length > 0.0 ? tables.resolution.edge_length : default_edge_length(tables, all, files);
     const double h = problem.edge_length;
     problem.mesh.regions.push_back({RegionKind::kOpen, 0.0});
     const auto add = [&](FoamMesh part) {
-        if (problem.mesh.faces.empty()) problem.mesh = std::move(part);
-        else mesh::join(problem.mesh, part);
+        if (problem.mesh.faces.empty())
+            problem.mesh = std::move(part);
+        else
+            mesh::join(problem.mesh, part);
     };
     if (!balls.empty()) at_table(place(root, "bubble", 0), "bubble", [&] { add(bubbles_of(balls, h)); });
     for (std::size_t k = 0; k < tables.films.size(); ++k)
@@ -438,11 +330,10 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
             add(std::move(files[k].mesh));
         });
     if (!cluster.empty()) at_table(place(root, "foam", 0), "foam", [&] { add(bubbles_of(cluster, h)); });
-    problem.wire_of.assign(problem.mesh.position.size(), -1);
-    for (std::size_t k = 0; k < tables.wires.size(); ++k) attach(problem, tables.wires[k], place(root, "wire", k));
+    detail::attach_wires(problem, tables, root);
     if (!problem.mesh.faces.empty())
         mesh::require_sound(problem.mesh, root.where.file.empty() ? "the films" : root.where.file);
-    add_releases(problem, tables, root, seed);
+    detail::add_releases(problem, tables, root, seed);
     problem.velocity = start_velocities(tables, problem.mesh);
 
     for (std::size_t k = 0; k < tables.tensions.size(); ++k) {
@@ -456,9 +347,9 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
     for (std::size_t k = 0; k < tables.vortices.size(); ++k)
         problem.vortices.push_back(vortex_of(tables.vortices[k], place(root, "vortex", k)));
     for (std::size_t k = 0; k < tables.solids.size(); ++k)
-        problem.solids.push_back(solid_of(tables.solids[k], place(root, "solid", k)));
+        problem.solids.push_back(detail::solid_of(tables.solids[k], place(root, "solid", k)));
     for (std::size_t k = 0; k < tables.walls.size(); ++k)
-        problem.walls.push_back(wall_of(tables.walls[k], place(root, "wall", k)));
+        problem.walls.push_back(detail::wall_of(tables.walls[k], place(root, "wall", k)));
     return problem;
 }
 

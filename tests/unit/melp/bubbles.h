@@ -1,20 +1,24 @@
 #pragma once
 
-// Bubbles for the tests of melp.
+// Bubbles and films for the tests of melp.
 
 #include "lamella/scene/scene.h"
 #include "lamella/solvers/melp/melp_solver.h"
 
+#include "../sim/state_memory.h"
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <vector>
 
 namespace lamella::melp {
 
-inline constexpr double kRadius = 0.05;    // [m]
-inline constexpr double kTension = 0.025;  // of one interface [N/m]
+inline constexpr double kRadius = 0.05;                                  // [m]
+inline constexpr double kTension = 0.025;                                // of one interface [N/m]
+inline constexpr double kFilmMass = 1000.0 * 5e-7;                       // [kg/m^2]
+inline const double kWaveSpeed = std::sqrt(2.0 * kTension / kFilmMass);  // of the membrane [m/s]
 
 /// Edge that gives so many coarse particles on a sphere of radius kRadius.
 inline double edge_for(double coarse_particles) {
@@ -29,18 +33,44 @@ inline std::unique_ptr<MelpSolver> solver_of(const std::string& tables,
     return std::unique_ptr<MelpSolver>(dynamic_cast<MelpSolver*>(solver.release()));
 }
 
-/// One bubble of radius kRadius, tension kTension and 500 nm of a liquid of 1000 kg/m^3, started.
-/// @param options  lines of [melp]
-inline std::unique_ptr<MelpSolver> bubble(double coarse_particles,
-                                          const std::string& options,
-                                          const std::string& material = "") {
-    auto solver = solver_of("[material]\nsurface_tension = " + std::to_string(kTension) +
-                            "\nthickness = 5e-7\nliquid_density = 1000.0\nsurfactant = 1e-7\n" + material +
-                            "\n[[bubble]]\nradius = " + std::to_string(kRadius) + "\n[resolution]\nedge_length = " +
-                            std::to_string(edge_for(coarse_particles)) + "\n[melp]\n" + options);
+/// Films of tension kTension and mass kFilmMass, 500 nm thick, started.
+/// @param shape     tables [[bubble]], [[film]] and others   @param options  lines of [melp]
+/// @param material  more lines of [material]
+inline std::unique_ptr<MelpSolver> films(const std::string& shape,
+                                         double edge_length,
+                                         const std::string& options,
+                                         const std::string& material = "") {
+    auto solver =
+        solver_of("[material]\nsurface_tension = " + std::to_string(kTension) +
+                  "\nthickness = 5e-7\nliquid_density = 1000.0\nsurfactant = 1e-7\n" + material + "\n" + shape +
+                  "\n[resolution]\nedge_length = " + std::to_string(edge_length) + "\n[melp]\n" + options);
     solver->start({});
     return solver;
 }
+
+/// One bubble of radius kRadius.
+inline std::unique_ptr<MelpSolver> bubble(double coarse_particles,
+                                          const std::string& options,
+                                          const std::string& material = "") {
+    return films("[[bubble]]\nradius = " + std::to_string(kRadius), edge_for(coarse_particles), options, material);
+}
+
+inline void advance(MelpSolver& solver, int steps) {
+    for (int k = 0; k < steps; ++k) solver.advance(1e9);
+}
+
+/// @param time  [s]
+inline void advance_to(MelpSolver& solver, double time) {
+    while (solver.time() < time) solver.advance(time);
+}
+
+inline test::StateMemory state_of(const MelpSolver& solver) {
+    test::StateMemory memory;
+    solver.save(memory);
+    return memory;
+}
+
+inline double total(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 inline double scalar(const sim::Solver& solver, const std::string& name) {
     for (const sim::Scalar& s : solver.scalars())

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "../sim/state_memory.h"
 #include "bubbles.h"
 #include <algorithm>
 #include <string>
@@ -63,10 +62,6 @@ steps_per_period = 0
 largest_step = 5e-4
 )";
 
-void run_to(MelpSolver& solver, double time) {
-    while (solver.time() < time) solver.advance(time);
-}
-
 /// Sum of the areas between regions a and b, as a has them.
 double shared(const MelpSolver& solver, std::size_t a, std::size_t b) {
     return shared_film(solver.coarse(), solver.geometry(), solver.gas().size(), a)[b];
@@ -93,14 +88,14 @@ TEST(Foam, JoinsAtOnceAfterADelayOrNever) {
          never = solver_of(kThree + melp + "joining = false\n");
     for (MelpSolver* solver : {at_once.get(), delayed.get(), never.get()}) {
         solver->start({});
-        run_to(*solver, 0.009);
+        advance_to(*solver, 0.009);
     }
     EXPECT_LT(distance(*at_once, 0, 1), 0.019);
     EXPECT_GT(distance(*delayed, 0, 1), 0.0198);
     EXPECT_GT(distance(*never, 0, 1), 0.0198);
-    run_to(*delayed, 0.03);
+    advance_to(*delayed, 0.03);
     EXPECT_LT(distance(*delayed, 0, 1), 0.019);
-    run_to(*never, 0.03);
+    advance_to(*never, 0.03);
     EXPECT_GT(distance(*never, 0, 1), 0.0198);
 }
 
@@ -143,18 +138,18 @@ TEST(Foam, GivesTheLiquidOfABubbleThatBurstsToItsNeighborsAndTheAir) {
             solver_of(kThree + "[[event]]\nregion = 3\ninto = 0\ntime = 0.02\n[melp]\nshape_damping = 5000.0\n" +
                       "steps_per_period = 0\nlargest_step = 5e-4\nfine_ratio = " + fine + "\n");
         solver->start({});
-        run_to(*solver, 0.0199);
+        advance_to(*solver, 0.0199);
         const double before = scalar(*solver, "liquid_mass");
         const double share = (shared(*solver, 2, 0) + shared(*solver, 2, 1)) /
                              (shared(*solver, 2, 0) + shared(*solver, 2, 1) + shared(*solver, 2, 2));
-        run_to(*solver, 0.03);
+        advance_to(*solver, 0.03);
         EXPECT_EQ(scalar(*solver, "bubbles"), 2.0);
         EXPECT_NEAR(scalar(*solver, "liquid_error"), 0.0, 1e-12);
         const double left = scalar(*solver, "liquid_left");
         EXPECT_NEAR(left / (before / 3.0), 1.0 - share, 0.05);
         EXPECT_NEAR(scalar(*solver, "liquid_mass") + left, before, 1e-12 * before);
         EXPECT_EQ(scalar(*solver, "flipped_normals"), 0.0);
-        run_to(*solver, 0.06);
+        advance_to(*solver, 0.06);
         EXPECT_LT(scalar(*solver, "density_spread"), 0.4);
     }
 }
@@ -187,7 +182,7 @@ fine_ratio = )" + std::string(fine) +
                                 "\n");
         solver->start({});
         const double amount = solver->gas()[0].amount + solver->gas()[1].amount;
-        run_to(*solver, 0.1);
+        advance_to(*solver, 0.1);
         EXPECT_EQ(scalar(*solver, "bubbles"), 1.0);
         EXPECT_EQ(scalar(*solver, "liquid_left"), 0.0);
         EXPECT_NEAR(scalar(*solver, "liquid_error"), 0.0, 1e-12);
@@ -231,7 +226,7 @@ steps_per_period = 0
 largest_step = 1e-3
 )");
     solver->start({});
-    run_to(*solver, 1.0);
+    advance_to(*solver, 1.0);
     EXPECT_LT(scalar(*solver, "max_velocity"), 1e-3);
     const double weight = scalar(*solver, "liquid_mass") * 9.81;
     double lowest = 1.0, flat = 0.0;
@@ -261,7 +256,7 @@ fine_ratio = 0
 )");
     solver->start({});
     EXPECT_EQ(scalar(*solver, "bubbles"), 2.0);
-    run_to(*solver, 0.002);
+    advance_to(*solver, 0.002);
     EXPECT_EQ(scalar(*solver, "bubbles"), 1.0);
     EXPECT_NEAR(scalar(*solver, "liquid_left"), scalar(*solver, "liquid_mass"), 1e-9 * scalar(*solver, "liquid_mass"));
 }
@@ -270,22 +265,16 @@ TEST(Foam, LetsBubblesInWhenTheirPlaceIsFree) {
     auto solver = solver_of(kPour);
     solver->start({});
     EXPECT_EQ(scalar(*solver, "bubbles"), 1.0);
-    run_to(*solver, 0.004);  // the first has not gone far enough
+    advance_to(*solver, 0.004);  // the first has not gone far enough
     EXPECT_EQ(scalar(*solver, "bubbles"), 1.0);
-    run_to(*solver, 0.029);
+    advance_to(*solver, 0.029);
     EXPECT_GE(scalar(*solver, "bubbles"), 1.0);
     EXPECT_NEAR(scalar(*solver, "liquid_error"), 0.0, 1e-12);
     const double before = scalar(*solver, "bubbles");
-    run_to(*solver, 0.031);
+    advance_to(*solver, 0.031);
     EXPECT_NEAR(scalar(*solver, "liquid_error"), 0.0, 1e-12);
     EXPECT_GT(scalar(*solver, "liquid_left"), 0.0);
     EXPECT_LE(scalar(*solver, "bubbles"), before);
-}
-
-test::StateMemory state_of(const MelpSolver& solver) {
-    test::StateMemory memory;
-    solver.save(memory);
-    return memory;
 }
 
 TEST(Foam, GivesTheSameBitsOnAnyNumberOfThreadsAndAfterAResume) {
@@ -295,7 +284,7 @@ TEST(Foam, GivesTheSameBitsOnAnyNumberOfThreadsAndAfterAResume) {
         const ThreadLimit limit(threads);
         auto solver = solver_of(kPour);
         solver->start({});
-        run_to(*solver, kEnd);
+        advance_to(*solver, kEnd);
         states.push_back(state_of(*solver));
     }
     for (const double stop : {0.0005, 0.02}) {
@@ -305,7 +294,7 @@ TEST(Foam, GivesTheSameBitsOnAnyNumberOfThreadsAndAfterAResume) {
         test::StateMemory memory = state_of(*first);
         auto second = solver_of(kPour);
         second->load(memory);
-        run_to(*second, kEnd);
+        advance_to(*second, kEnd);
         states.push_back(state_of(*second));
     }
     for (const test::StateMemory& state : states) {

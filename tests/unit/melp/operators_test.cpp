@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bubbles.h"
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -37,12 +38,6 @@ double spacing_of(std::size_t count, double radius) {
 
 Geometry geometry(const CoarseParticles& coarse, double radius, double reach) {
     return geometry_of(coarse, reach * spacing_of(coarse.size(), radius));
-}
-
-double total(const std::vector<double>& values) {
-    double sum = 0.0;
-    for (const double v : values) sum += v;
-    return sum;
 }
 
 /// A flat square of particles, 1 m long, in the plane of two given directions; every second row is moved by half.

@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "../sim/state_memory.h"
 #include "bubbles.h"
 
 namespace lamella::melp {
@@ -119,16 +118,6 @@ damping = 1000.0
 start.thickness_noise = 0.5
 )";
 
-void advance(MelpSolver& solver, int steps) {
-    for (int k = 0; k < steps; ++k) solver.advance(1e9);
-}
-
-test::StateMemory state_of(const MelpSolver& solver) {
-    test::StateMemory memory;
-    solver.save(memory);
-    return memory;
-}
-
 TEST(MelpSolver, GivesTheSameBitsOnOneAndTwoThreads) {
     for (const char* scene : {kBusy, kPair, kFrame, kHalfBubble, kBurst, kTriple}) {
         std::vector<test::StateMemory> states;
@@ -240,7 +229,7 @@ damping = 1000.0
 )");
     solver->start({});
     const double end = 0.2;
-    while (solver->time() < end) solver->advance(end);
+    advance_to(*solver, end);
     const Vec3 center = end * Vec3{{0.1, 0.0, 0.3}}, axis{{0.0, -std::sin(end), std::cos(end)}};
     for (const Vec3& x : solver->coarse().position) {
         EXPECT_NEAR(dot(x - center, axis), 0.0, 3e-4);
@@ -257,7 +246,7 @@ TEST(MelpSolver, BurstsABubbleToTheEnd) {
     solver->start({});
     EXPECT_EQ(open_edges(solver->frame().surface.triangles), 0U);
     const std::size_t particles = solver->fine().size();
-    while (solver->time() < 2e-3) solver->advance(2e-3);
+    advance_to(*solver, 2e-3);
     EXPECT_GT(open_edges(solver->frame().surface.triangles), 10U);
     const auto events = solver->take_events();
     ASSERT_EQ(events.size(), 1U);

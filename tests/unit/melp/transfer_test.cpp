@@ -3,12 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "bubbles.h"
-#include <numeric>
 
 namespace lamella::melp {
 namespace {
-
-double total(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 /// A bubble whose liquid whirls and is uneven.
 std::unique_ptr<MelpSolver> stirred_bubble() { return bubble(500, "start.thickness_noise = 0.6\n"); }

@@ -14,7 +14,7 @@ namespace {
 TEST(DoubleBubble, SettlesFromFirstContact) {
     auto solver = settling_cluster({{{{-0.0502, 0.0, 0.0}}, 0.05}, {{{0.0502, 0.0, 0.0}}, 0.05}}, 0.003545);
     for (const double time : {0.05, 0.1, 0.15}) {
-        while (solver->time() < time) solver->advance(time);
+        advance_to(*solver, time);
         const Cap a = cap_of(*solver, 0), b = cap_of(*solver, 1);
         // Two equal caps and the disk between them: it meets them at 90 degrees + asin(half the distance / radius).
         const double half = 0.5 * norm(b.center - a.center), radius = 0.5 * (a.radius + b.radius);
@@ -38,7 +38,7 @@ TEST(TripleBubble, SettlesFromFirstContact) {
     auto solver = settling_cluster(
         {{{{-0.0502, 0.0, 0.0}}, 0.05}, {{{0.0502, 0.0, 0.0}}, 0.05}, {{{0.0, 0.08695, 0.0}}, 0.05}}, 0.005);
     for (const double time : {0.03, 0.08}) {
-        while (solver->time() < time) solver->advance(time);
+        advance_to(*solver, time);
         for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
             const double angle = angle_between(cap_of(*solver, a), cap_of(*solver, b));
             std::printf("t %.2f caps %d and %d: %.2f degrees, spread %.2f\n", time, a, b, angle,
@@ -57,7 +57,7 @@ TEST(QuadrupleBubble, SettlesFromFirstContact) {
                                     {{{-kArm, kArm, -kArm}}, 0.05},
                                     {{{-kArm, -kArm, kArm}}, 0.05}},
                                    0.005);
-    while (solver->time() < 0.03) solver->advance(0.03);
+    advance_to(*solver, 0.03);
     for (int a = 0; a < 4; ++a)
         for (int b = 0; b < a; ++b)
             EXPECT_NEAR(angle_between(cap_of(*solver, a), cap_of(*solver, b)), 120.0, 2.4) << a << " and " << b;
@@ -74,7 +74,7 @@ TEST(UnequalBubbles, HaveThePartitionThatTheirPressuresAskFor) {
     for (const Case& c : {Case{0.04926, 0.02616, 13.333}, Case{0.05, 0.03, 9.97}}) {
         auto solver = settling_cluster(
             {{{{-1.004 * c.large, 0.0, 0.0}}, c.large}, {{{1.004 * c.small, 0.0, 0.0}}, c.small}}, 0.0035);
-        while (solver->time() < 0.04) solver->advance(0.04);
+        advance_to(*solver, 0.04);
         const Cap large = cap_of(*solver, 0), small = cap_of(*solver, 1);
         const double curvature = partition_curvature(*solver, 0, 1);
         std::printf("curvature %.3f of %.3f, of the caps %.3f; angle %.2f\n", curvature, c.curvature,
@@ -158,7 +158,7 @@ damping = 500.0
 steps_per_period = 40.0
 )");
     solver->start({});
-    while (solver->time() < 0.03) solver->advance(0.03);
+    advance_to(*solver, 0.03);
     const auto film = [&](std::size_t a, std::size_t b) {
         return shared_film(solver->coarse(), solver->geometry(), 4, a)[b] / (std::numbers::pi * 0.02 * 0.02);
     };

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "../../unit/melp/bubbles.h"
-#include "../../unit/sim/state_memory.h"
 
 namespace lamella::melp {
 namespace {
@@ -25,8 +24,7 @@ TEST(ElasticWave, RunsAtTheSpeedOfMarangoni) {
     const double exact = 2.0 * std::numbers::pi * kRadius / (speed * std::sqrt(kMode * (kMode + 1.0)));
     const std::string options = "largest_step = " + std::to_string(exact / 100.0) + "\nsteps_per_period = 20.0";
     auto solver = bubble(2562, options);
-    test::StateMemory state;
-    solver->save(state);
+    test::StateMemory state = state_of(*solver);
     auto& position = state.reals["fine/position"];
     for (std::size_t p = 0; p < solver->fine().size(); ++p) {
         const Vec3 x{{position[3 * p], position[3 * p + 1], position[3 * p + 2]}};

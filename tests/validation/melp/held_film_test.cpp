@@ -7,21 +7,7 @@
 namespace lamella::melp {
 namespace {
 
-/// A film of 25 mN/m and 500 nm of a liquid of 1000 kg/m^3, started.
-std::unique_ptr<MelpSolver> film(const std::string& film,
-                                 double edge_length,
-                                 const std::string& options,
-                                 const std::string& material = "") {
-    auto solver = solver_of(
-        "[material]\nliquid_density = 1000.0\nsurfactant = 1e-7\nsurface_tension = 0.025\nthickness = 5e-7\n" +
-        material + "\n[[film]]\n" + film + "\n[resolution]\nedge_length = " + std::to_string(edge_length) +
-        "\n[melp]\n" + options);
-    solver->start({});
-    return solver;
-}
-
-constexpr const char* kDisk = "shape = \"disk\"\nradius = 0.05\n";
-const double kWaveSpeed = std::sqrt(2.0 * 0.025 / (1000.0 * 5e-7));
+constexpr const char* kDisk = "[[film]]\nshape = \"disk\"\nradius = 0.05\n";
 
 /// Mean height of a film that lies in the plane z = 0 [m].
 double height(const MelpSolver& solver) {
@@ -48,7 +34,7 @@ double half_mode(const MelpSolver& solver, int l) {
 /// A disk at rest that its weight is put on swings about z = g (R^2 - r^2) / (4 c^2) mostly in its first mode,
 /// omega = 2.4048 c / R.
 TEST(HeldFilm, DiskSwingsAsADrum) {
-    auto solver = film(kDisk, 0.0025, "fine_ratio = 0\nsteps_per_period = 100.0", "gravity = [0.0, 0.0, -9.81]");
+    auto solver = films(kDisk, 0.0025, "fine_ratio = 0\nsteps_per_period = 100.0", "gravity = [0.0, 0.0, -9.81]");
     const double sag = -9.81 * 0.05 * 0.05 / (8.0 * kWaveSpeed * kWaveSpeed);
     const double swing = period(*solver, 4, [&] { return height(*solver) - sag; });
     const double ratio = 2.0 * std::numbers::pi / swing / (2.404825557695773 * kWaveSpeed / 0.05);
@@ -57,20 +43,20 @@ TEST(HeldFilm, DiskSwingsAsADrum) {
 }
 
 TEST(HeldFilm, DiskSagsUnderItsWeight) {
-    auto solver = film(kDisk, 0.0025, "fine_ratio = 0\ndamping = 300.0", "gravity = [0.0, 0.0, -9.81]");
-    while (solver->time() < 0.1) solver->advance(0.1);
+    auto solver = films(kDisk, 0.0025, "fine_ratio = 0\ndamping = 300.0", "gravity = [0.0, 0.0, -9.81]");
+    advance_to(*solver, 0.1);
     const double sag = -9.81 * 0.05 * 0.05 / (8.0 * kWaveSpeed * kWaveSpeed);
     std::printf("sag: %.4f\n", height(*solver) / sag);
     EXPECT_NEAR(height(*solver) / sag, 1.0, 0.02);
 }
 
-constexpr const char* kHalf = "shape = \"hemisphere\"\nradius = 0.05\n";
+constexpr const char* kHalf = "[[film]]\nshape = \"hemisphere\"\nradius = 0.05\n";
 
 /// Half a bubble that slides on a plate swings as half of a whole one.
 TEST(HeldFilm, HalfBubbleOnAWetPlateSwingsInMode2) {
-    auto solver = film(kHalf, 0.0051,
-                       "fine_ratio = 0\nrim = \"wet_plate\"\nstart.mode_amplitude = 0.01\n"
-                       "steps_per_period = 100.0");
+    auto solver = films(kHalf, 0.0051,
+                        "fine_ratio = 0\nrim = \"wet_plate\"\nstart.mode_amplitude = 0.01\n"
+                        "steps_per_period = 100.0");
     const double swing = period(*solver, 4, [&] { return half_mode(*solver, 2); });
     const double ratio = 2.0 * std::numbers::pi / swing / 400.0;
     std::printf("half bubble, %zu coarse, l = 2: %.4f\n", solver->coarse().size(), ratio);
@@ -80,10 +66,10 @@ TEST(HeldFilm, HalfBubbleOnAWetPlateSwingsInMode2) {
 /// On either plate it stays at rest with the pressure of Young and Laplace.
 TEST(HeldFilm, HalfBubbleRestsOnAPlate) {
     for (const char* rim : {"plate", "wet_plate"}) {
-        auto solver = film(kHalf, 0.0051,
-                           "fine_ratio = 0\nrim = \"" + std::string(rim) +
-                               "\"\ntheta = 1.0\nsteps_per_period = 0.0\nlargest_step = 2e-3\n");
-        while (solver->time() < 1.0) solver->advance(1.0);
+        auto solver = films(kHalf, 0.0051,
+                            "fine_ratio = 0\nrim = \"" + std::string(rim) +
+                                "\"\ntheta = 1.0\nsteps_per_period = 0.0\nlargest_step = 2e-3\n");
+        advance_to(*solver, 1.0);
         double farthest = 0.0;
         for (const Vec3& x : solver->coarse().position) farthest = std::max(farthest, std::abs(norm(x) / 0.05 - 1.0));
         std::printf("half bubble, %s: pressure %.4f, farthest from the sphere %.1e, fastest %.1e\n", rim,
@@ -96,9 +82,9 @@ TEST(HeldFilm, HalfBubbleRestsOnAPlate) {
 
 /// Liquid sinks in a vertical film until eta = C exp(-k z), k = rho g eta_0 / (2 R T Gamma_0).
 TEST(HeldFilm, VerticalRectangleDrainsToAnExponential) {
-    auto solver = film("shape = \"rectangle\"\nu = [0.08, 0.0, 0.0]\nv = [0.0, 0.0, 0.06]\n", 0.0025,
-                       "steps_per_period = 0.0\nlargest_step = 5e-3\nair_drag = 1e-3", "gravity = [0.0, 0.0, -9.81]");
-    while (solver->time() < 3.0) solver->advance(3.0);
+    auto solver = films("[[film]]\nshape = \"rectangle\"\nu = [0.08, 0.0, 0.0]\nv = [0.0, 0.0, 0.06]\n", 0.0025,
+                        "steps_per_period = 0.0\nlargest_step = 5e-3\nair_drag = 1e-3", "gravity = [0.0, 0.0, -9.81]");
+    advance_to(*solver, 3.0);
     const double k = 1000.0 * 9.81 * 5e-7 / (2.0 * 8.31446261815324 * 298.15 * 1e-7), x = 0.5 * k * 0.06;
     double n = 0.0, z1 = 0.0, z2 = 0.0, y1 = 0.0, zy = 0.0, square = 0.0;
     for (std::size_t i = 0; i < solver->coarse().size(); ++i) {
@@ -119,12 +105,12 @@ TEST(HeldFilm, VerticalRectangleDrainsToAnExponential) {
 }
 
 TEST(HeldFilm, UnevenLiquidOfADiskEvensOut) {
-    auto solver = film(kDisk, 0.00273, "steps_per_period = 0.0\nlargest_step = 5e-3\nstart.thickness_noise = 0.5");
+    auto solver = films(kDisk, 0.00273, "steps_per_period = 0.0\nlargest_step = 5e-3\nstart.thickness_noise = 0.5");
     const auto spread = [&] {
         return scalar(*solver, "film_thickness_deviation") / scalar(*solver, "film_thickness_mean");
     };
     const double before = spread();
-    while (solver->time() < 1.0) solver->advance(1.0);
+    advance_to(*solver, 1.0);
     std::printf("equalisation, %zu coarse: %.4f to %.5f\n", solver->coarse().size(), before, spread());
     EXPECT_GT(before, 0.1);
     EXPECT_LT(spread(), 0.01);

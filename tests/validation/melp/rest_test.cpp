@@ -8,12 +8,6 @@
 namespace lamella::melp {
 namespace {
 
-void advance_to(MelpSolver& solver, double time) {
-    while (solver.time() < time) solver.advance(time);
-}
-
-const double kFilmMass = 1000.0 * 5e-7;                           // [kg/m^2]
-const double kWaveSpeed = std::sqrt(2.0 * kTension / kFilmMass);  // of the membrane [m/s]
 const double kArea = 4.0 * std::numbers::pi * kRadius * kRadius;
 
 TEST(Rest, HasThePressureOfYoungAndLaplace) {

@@ -6,6 +6,7 @@
 #include "lamella/solvers/melp/keep_inside.h"
 #include "lamella/solvers/melp/operators.h"
 #include "lamella/solvers/melp/redistribution.h"
+#include "lamella/solvers/melp/refusals.h"
 #include "lamella/solvers/melp/start.h"
 #include "lamella/solvers/melp/volumes.h"
 

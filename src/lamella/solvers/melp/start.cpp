@@ -1,17 +1,15 @@
 #include "lamella/solvers/melp/start.h"
 
 #include "lamella/core/error.h"
-#include "lamella/film/noise.h"
 #include "lamella/film/surfactant.h"
 #include "lamella/mesh/volume.h"
 #include "lamella/solvers/melp/bubble_shapes.h"
 #include "lamella/solvers/melp/open_films.h"
-
-#include <fmt/format.h>
+#include "lamella/solvers/melp/refusals.h"
+#include "lamella/solvers/melp/start_thickness.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -22,28 +20,6 @@ using mesh::Ball;
 using mesh::FoamMesh;
 using mesh::RegionId;
 using mesh::RegionKind;
-using mesh::VertexId;
-
-std::int64_t bubble_count(const film::Problem& films) {
-    const auto& regions = films.mesh.regions;
-    return std::count_if(regions.begin(), regions.end(), [](const auto& r) { return r.kind == RegionKind::kClosed; });
-}
-
-/// Where bubbles meet, films fold within a few spacings: folds have to fit onto the bubble.
-void refuse_coarse_contacts(const film::Problem& films) {
-    const auto& regions = films.mesh.regions;
-    const auto bubbles = bubble_count(films);
-    if (bubbles < 2) return;
-    constexpr double kFinest = 6.0;
-    for (const RegionId r : regions.ids()) {
-        const double radius = std::cbrt(0.75 * regions[r].target_volume / std::numbers::pi);
-        if (regions[r].kind == RegionKind::kClosed && films.edge_length > 1.001 * radius / kFinest)
-            throw InputError(
-                fmt::format("resolution.edge_length = {:.4g} m is too coarse for bubble {} among others: at most a "
-                            "sixth of its radius of {:.4g} m will do",
-                            films.edge_length, index(r), radius));
-    }
-}
 
 Sample on_ball(const Ball& ball, std::size_t count) {
     Sample sample{{}, fibonacci_sphere(count)};
@@ -73,47 +49,6 @@ void deform(std::vector<Vec3>& position, const Vec3& center, const StartOptions&
 
 }  // namespace
 
-void refuse_unknown_films(const film::Problem& films, const Options& options) {
-    const FoamMesh& mesh = films.mesh;
-    if (mesh.periodic()) throw InputError("melp: films in a periodic box are for solver equilibrium");
-    const auto kind = [&](RegionId r) { return mesh.regions[r].kind; };
-    IdVector<VertexId, std::uint8_t> of_bubble(mesh.position.size());
-    for (const mesh::Face& face : mesh.faces) {
-        const bool back = kind(face.back) == RegionKind::kClosed, front = kind(face.front) == RegionKind::kClosed;
-        if (back || front)
-            for (const VertexId v : face.vertices) of_bubble[v] = 1;
-        if ((back && !front && face.front != mesh::kOutside) || (front && !back && face.back != mesh::kOutside))
-            throw InputError("melp: bubbles in films on wires are not built yet; use solver vortex_sheet");
-    }
-    for (const VertexId v : mesh.position.ids())
-        if (mesh.on_wire[v] != 0 && of_bubble[v] != 0)
-            throw InputError("melp: wires that hold closed bubbles are not built yet; use solver vortex_sheet");
-    for (const film::Wire& wire : films.wires)
-        if (wire.ring && wire.ring->blow != 0.0)
-            throw InputError("melp: wire.blow is not built yet; use solver vortex_sheet");
-    for (const OpenFilm& film : open_films(films))
-        if (options.rim != RimHold::kWire && !film.half_sphere())
-            throw InputError("melp.rim: a plate under films is built for [[film]] with shape = \"hemisphere\" only");
-        else if (options.start.mode_amplitude != 0.0 && options.rim != RimHold::kWetPlate)
-            throw InputError("melp.start.mode_amplitude: films that are held by wires start at rest");
-    if (!films.tensions.empty()) throw InputError("melp: [[tension]] is not built yet; use solver equilibrium");
-    if (!films.solids.empty()) throw InputError("melp: [[solid]] is not built yet; use solver vortex_particle");
-    if (!films.vortices.empty()) throw InputError("melp: [[vortex]] is not built yet; use solver vortex_particle");
-    for (const film::Event& event : films.events) {
-        if (event.kind == film::Event::Kind::kInflate)
-            throw InputError("melp: [[event]] with kind = \"inflate\" is not built yet; use solver vortex_sheet");
-        const bool foam = bubble_count(films) > 1;
-        if (foam && event.kind == film::Event::Kind::kPuncture)
-            throw InputError("melp: [[event]] puncture in scenes of several bubbles is not built yet; use pop");
-        if (!foam && (event.region == film::kRandomBubble || event.into != film::kLargestNeighbor))
-            throw InputError("melp: [[event]] pop of a bubble on its own takes a region and no `into`");
-        if (!foam && options.fine_ratio == 0)
-            throw InputError(
-                "melp.fine_ratio = 0: films burst only with fine particles, whose liquid the edge gathers");
-    }
-    refuse_coarse_contacts(films);
-}
-
 std::vector<Vec3> fibonacci_sphere(std::size_t count) {
     std::vector<Vec3> points;
     points.reserve(count);
@@ -135,47 +70,6 @@ struct RegionStart {
     Vec3 velocity{};
     std::optional<Vec3> center{};  ///< of modes and noise; nothing: the mean of its particles
     bool held = false;
-};
-
-/// Liquid of a film at the start, per material.thickness.
-class StartThickness {
-public:
-    StartThickness(const film::Problem& films, const StartOptions& options, std::uint64_t seed, double largest_radius)
-        : options_(options),
-          wave_length_(options.noise_length > 0.0 ? options.noise_length : 1.4 * largest_radius),
-          seed_(seed),
-          thickness_(films.material.thickness),
-          up_(norm(films.material.gravity) > 0.0 ? -films.material.gravity : Vec3{{0.0, 0.0, 1.0}}) {
-        up_ = up_ / norm(up_);
-    }
-
-    /// Sets the range of heights of a film.
-    void begin(const std::vector<Vec3>& position) {
-        low_ = std::numeric_limits<double>::infinity();
-        high_ = -low_;
-        for (const Vec3& x : position) {
-            low_ = std::min(low_, dot(up_, x));
-            high_ = std::max(high_, dot(up_, x));
-        }
-    }
-    /// @param arm  from the film's center
-    double at(const Vec3& x, const Vec3& arm) const {
-        const double top = options_.thickness_top > 0.0 ? options_.thickness_top / thickness_ : 1.0;
-        const double bottom = options_.thickness_bottom > 0.0 ? options_.thickness_bottom / thickness_ : 1.0;
-        const double height = high_ > low_ ? (dot(up_, x) - low_) / (high_ - low_) : 0.5;
-        const double noise =
-            options_.thickness_noise * film::gradient_noise(arm / wave_length_, seed_, options_.noise_octaves);
-        constexpr double kThinnest = 0.05;
-        return std::max((bottom + height * (top - bottom)) * (1.0 + noise), kThinnest);
-    }
-
-private:
-    const StartOptions& options_;
-    double wave_length_;
-    std::uint64_t seed_;
-    double thickness_;
-    Vec3 up_;
-    double low_ = 0.0, high_ = 0.0;
 };
 
 void append(Start& start,
@@ -267,7 +161,7 @@ RegionStart region_on(const Ball& ball, double h, int fine_ratio) {
 Rims start_rims(const film::Problem& films, const Options& options) {
     Rims rims;
     rims.set_wires(films.wires);
-    auto region = static_cast<std::int32_t>(bubble_count(films) - static_cast<std::int64_t>(films.releases.size()));
+    auto region = static_cast<std::int32_t>(films.bubble_count() - static_cast<std::int64_t>(films.releases.size()));
     std::int32_t before = 0;
     for (const OpenFilm& film : open_films(films)) {
         for (std::size_t k = 0; k < film.rims.size(); ++k) {

@@ -40,10 +40,6 @@ void append_release(
 /// What holds the films on wires of a scene: their regions of particles come after those of its bubbles.
 Rims start_rims(const film::Problem& films, const Options& options);
 
-/// @throws InputError  films that this solver does not know, or several bubbles that it could not follow through a
-/// contact
-void refuse_unknown_films(const film::Problem& films, const Options& options);
-
 /// `count` points spread evenly over the unit sphere along a spiral: point i has height 1 - (2 i + 1) / count and turns
 /// by the golden angle from the one before.
 std::vector<Vec3> fibonacci_sphere(std::size_t count);

@@ -1,0 +1,81 @@
+// What of a scene the solver does not know, refused by name.
+
+#include "lamella/solvers/melp/refusals.h"
+
+#include "lamella/core/error.h"
+#include "lamella/solvers/melp/open_films.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lamella::melp {
+namespace {
+
+using mesh::FoamMesh;
+using mesh::RegionId;
+using mesh::RegionKind;
+using mesh::VertexId;
+
+/// Where bubbles meet, films fold within a few spacings: folds have to fit onto the bubble.
+void refuse_coarse_contacts(const film::Problem& films) {
+    const auto& regions = films.mesh.regions;
+    const auto bubbles = films.bubble_count();
+    if (bubbles < 2) return;
+    constexpr double kFinest = 6.0;
+    for (const RegionId r : regions.ids()) {
+        const double radius = std::cbrt(0.75 * regions[r].target_volume / std::numbers::pi);
+        if (regions[r].kind == RegionKind::kClosed && films.edge_length > 1.001 * radius / kFinest)
+            throw InputError(
+                fmt::format("resolution.edge_length = {:.4g} m is too coarse for bubble {} among others: at most a "
+                            "sixth of its radius of {:.4g} m will do",
+                            films.edge_length, index(r), radius));
+    }
+}
+
+}  // namespace
+
+void refuse_unknown_films(const film::Problem& films, const Options& options) {
+    const FoamMesh& mesh = films.mesh;
+    if (mesh.periodic()) throw InputError("melp: films in a periodic box are for solver equilibrium");
+    const auto kind = [&](RegionId r) { return mesh.regions[r].kind; };
+    IdVector<VertexId, std::uint8_t> of_bubble(mesh.position.size());
+    for (const mesh::Face& face : mesh.faces) {
+        const bool back = kind(face.back) == RegionKind::kClosed, front = kind(face.front) == RegionKind::kClosed;
+        if (back || front)
+            for (const VertexId v : face.vertices) of_bubble[v] = 1;
+        if ((back && !front && face.front != mesh::kOutside) || (front && !back && face.back != mesh::kOutside))
+            throw InputError("melp: bubbles in films on wires are not built yet; use solver vortex_sheet");
+    }
+    for (const VertexId v : mesh.position.ids())
+        if (mesh.on_wire[v] != 0 && of_bubble[v] != 0)
+            throw InputError("melp: wires that hold closed bubbles are not built yet; use solver vortex_sheet");
+    for (const film::Wire& wire : films.wires)
+        if (wire.ring && wire.ring->blow != 0.0)
+            throw InputError("melp: wire.blow is not built yet; use solver vortex_sheet");
+    for (const OpenFilm& film : open_films(films))
+        if (options.rim != RimHold::kWire && !film.half_sphere())
+            throw InputError("melp.rim: a plate under films is built for [[film]] with shape = \"hemisphere\" only");
+        else if (options.start.mode_amplitude != 0.0 && options.rim != RimHold::kWetPlate)
+            throw InputError("melp.start.mode_amplitude: films that are held by wires start at rest");
+    if (!films.tensions.empty()) throw InputError("melp: [[tension]] is not built yet; use solver equilibrium");
+    if (!films.solids.empty()) throw InputError("melp: [[solid]] is not built yet; use solver vortex_particle");
+    if (!films.vortices.empty()) throw InputError("melp: [[vortex]] is not built yet; use solver vortex_particle");
+    for (const film::Event& event : films.events) {
+        if (event.kind == film::Event::Kind::kInflate)
+            throw InputError("melp: [[event]] with kind = \"inflate\" is not built yet; use solver vortex_sheet");
+        const bool foam = films.bubble_count() > 1;
+        if (foam && event.kind == film::Event::Kind::kPuncture)
+            throw InputError("melp: [[event]] puncture in scenes of several bubbles is not built yet; use pop");
+        if (!foam && (event.region == film::kRandomBubble || event.into != film::kLargestNeighbor))
+            throw InputError("melp: [[event]] pop of a bubble on its own takes a region and no `into`");
+        if (!foam && options.fine_ratio == 0)
+            throw InputError(
+                "melp.fine_ratio = 0: films burst only with fine particles, whose liquid the edge gathers");
+    }
+    refuse_coarse_contacts(films);
+}
+
+}  // namespace lamella::melp

@@ -1,0 +1,41 @@
+#include "lamella/solvers/melp/start_thickness.h"
+
+#include "lamella/film/noise.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace lamella::melp {
+
+StartThickness::StartThickness(const film::Problem& films,
+                               const StartOptions& options,
+                               std::uint64_t seed,
+                               double largest_radius)
+    : options_(options),
+      wave_length_(options.noise_length > 0.0 ? options.noise_length : 1.4 * largest_radius),
+      seed_(seed),
+      thickness_(films.material.thickness),
+      up_(norm(films.material.gravity) > 0.0 ? -films.material.gravity : Vec3{{0.0, 0.0, 1.0}}) {
+    up_ = up_ / norm(up_);
+}
+
+void StartThickness::begin(const std::vector<Vec3>& position) {
+    low_ = std::numeric_limits<double>::infinity();
+    high_ = -low_;
+    for (const Vec3& x : position) {
+        low_ = std::min(low_, dot(up_, x));
+        high_ = std::max(high_, dot(up_, x));
+    }
+}
+
+double StartThickness::at(const Vec3& x, const Vec3& arm) const {
+    const double top = options_.thickness_top > 0.0 ? options_.thickness_top / thickness_ : 1.0;
+    const double bottom = options_.thickness_bottom > 0.0 ? options_.thickness_bottom / thickness_ : 1.0;
+    const double height = high_ > low_ ? (dot(up_, x) - low_) / (high_ - low_) : 0.5;
+    const double noise =
+        options_.thickness_noise * film::gradient_noise(arm / wave_length_, seed_, options_.noise_octaves);
+    constexpr double kThinnest = 0.05;
+    return std::max((bottom + height * (top - bottom)) * (1.0 + noise), kThinnest);
+}
+
+}  // namespace lamella::melp

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "lamella/film/problem.h"
+#include "lamella/solvers/melp/options.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace lamella::melp {
+
+/// Liquid of a film at the start, per material.thickness.
+class StartThickness {
+public:
+    /// @param largest_radius  of the scene's films, for the default wave length of the noise [m]
+    StartThickness(const film::Problem& films, const StartOptions& options, std::uint64_t seed, double largest_radius);
+
+    /// Sets the range of heights of a film.
+    void begin(const std::vector<Vec3>& position);
+    /// @param arm  from the film's center [m]
+    double at(const Vec3& x, const Vec3& arm) const;
+
+private:
+    StartOptions options_;
+    double wave_length_;
+    std::uint64_t seed_;
+    double thickness_;
+    Vec3 up_;
+    double low_ = 0.0, high_ = 0.0;
+};
+
+}  // namespace lamella::melp
