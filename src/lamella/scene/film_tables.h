@@ -323,6 +323,7 @@ struct WallTable {
 struct FaucetTable {
     Vec3 center;
     Vec3 velocity;
+    double width = 0.0;
     int count = 1;
     double radius = 0.0;
     double radius_spread = 0.0;
@@ -333,6 +334,8 @@ struct FaucetTable {
     void visit(Visitor&& option) {
         option("center", center, sim::any_number(), {"where its bubbles enter", "length"});
         option("velocity", velocity, sim::any_number(), {"with which they do", "length/time"});
+        option("width", width, sim::at_least(0.0),
+               {"they enter at random in a disk of this radius across velocity", "length"});
         option("count", count, sim::between(1, 100'000), {"how many"});
         option("radius", radius, sim::at_least(0.0), {"of the bubbles, on average", "length"});
         option("radius_spread", radius_spread, sim::between(0.0, 0.5),

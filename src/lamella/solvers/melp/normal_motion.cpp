@@ -199,6 +199,40 @@ std::vector<double> growth(const NormalProblem& p, const std::vector<double>& ga
     return sum;
 }
 
+/// What dampens CG's errors: the diagonal of masses and films with the gases, D + sum_r g_r b_r b_r^T, inverted exactly
+/// as each particle belongs to one gas (Sherman and Morrison). With the diagonal alone each bubble of a foam has a
+/// stiff direction of its own, and takes an iteration.
+class GasPreconditioner {
+public:
+    /// @param scale  1 / D   @param gas  g per region
+    GasPreconditioner(const NormalProblem& p,
+                      const std::vector<double>& gas_area,
+                      const std::vector<double>& gas,
+                      const std::vector<double>& scale)
+        : p_(p), gas_area_(gas_area), scale_(scale), share_(gas.size(), 0.0) {
+        std::vector<double> soft(gas.size(), 0.0);  // b D^-1 b
+        for (std::size_t i = 0; i < scale.size(); ++i)
+            soft[region_of(p.coarse, i)] += gas_area[i] * gas_area[i] * scale[i];
+        for (std::size_t r = 0; r < gas.size(); ++r) share_[r] = gas[r] / (1.0 + gas[r] * soft[r]);
+    }
+
+    void operator()(const std::vector<double>& u, std::vector<double>& v) const {
+        v.resize(u.size());
+        parallel_for(u.size(), [&](std::size_t i) { v[i] = scale_[i] * u[i]; });
+        const std::vector<double> grown = growth(p_, gas_area_, v);
+        parallel_for(u.size(), [&](std::size_t i) {
+            const std::size_t r = region_of(p_.coarse, i);
+            v[i] -= share_[r] * grown[r] * scale_[i] * gas_area_[i];
+        });
+    }
+
+private:
+    const NormalProblem& p_;
+    const std::vector<double>& gas_area_;
+    const std::vector<double>& scale_;
+    std::vector<double> share_;
+};
+
 }  // namespace
 
 NormalStep move_along_normals(const NormalProblem& p) {
@@ -221,13 +255,12 @@ NormalStep move_along_normals(const NormalProblem& p) {
                                          ? region_drifts(p.geometry, p.coarse, p.velocity, p.gas.size())
                                          : std::vector<Vec3>(p.gas.size());
     parallel_for(count, [&](std::size_t i) {
-        const double a = gas_area[i];
         const Spring walls = spring_of_walls(p, i);
         const Vec3 outer = p.external[i] + (p.shape_damping * p.mass[i]) * flight[region_of(p.coarse, i)];
         inertia[i] = p.mass[i] * (1.0 + p.dt * (p.damping + p.shape_damping)) + p.dt * p.dt * walls.stiffness;
         given[i] = p.mass[i] * p.velocity[i] + p.dt * (force[i] + dot(outer, p.geometry.normal[i]) + walls.force);
         right[i] = given[i] + mixed * stiffness.apply(p.velocity, i) + p.theta * p.dt * p.dt * stiffness.of_rims(i);
-        scale[i] = 1.0 / (inertia[i] - implicit * stiffness.diagonal(i) + gas[region_of(p.coarse, i)] * a * a);
+        scale[i] = 1.0 / (inertia[i] - implicit * stiffness.diagonal(i));
     });
     const auto apply = [&](const std::vector<double>& v, std::vector<double>& y) {
         y.resize(count);
@@ -240,7 +273,8 @@ NormalStep move_along_normals(const NormalProblem& p) {
     NormalStep step;
     step.velocity.assign(p.velocity.begin(), p.velocity.end());
     constexpr int kMostIterations = 2000;
-    step.solution = linalg::conjugate_gradient(apply, scale, right, step.velocity, p.tolerance, kMostIterations);
+    step.solution = linalg::preconditioned_conjugate_gradient(apply, GasPreconditioner(p, gas_area, gas, scale), right,
+                                                              step.velocity, p.tolerance, kMostIterations);
 
     // What the implicit terms have added pushes nothing as a whole either: a rigid motion mends that, which strains no
     // film.
