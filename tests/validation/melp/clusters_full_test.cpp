@@ -71,9 +71,22 @@ TEST(UnequalBubbles, HaveThePartitionThatTheirPressuresAskFor) {
     struct Case {
         double large, small, curvature;
     };
-    for (const Case& c : {Case{0.04926, 0.02616, 13.333}, Case{0.05, 0.03, 9.97}}) {
+    const std::array<Case, 12> cases{{{0.04978, 0.01629, 30.0},
+                                      {0.04957, 0.02112, 20.0},
+                                      {0.04926, 0.02616, 13.333},
+                                      {0.04885, 0.03134, 8.571},
+                                      {0.04837, 0.03661, 5.0},
+                                      {0.04783, 0.04193, 2.222},
+                                      {0.05, 0.02, 22.01},
+                                      {0.05, 0.025, 14.83},
+                                      {0.05, 0.03, 9.97},
+                                      {0.05, 0.035, 6.44},
+                                      {0.05, 0.04, 3.77},
+                                      {0.05, 0.045, 1.68}}};
+    for (const Case& c : cases) {
         auto solver = settling_cluster(
-            {{{{-1.004 * c.large, 0.0, 0.0}}, c.large}, {{{1.004 * c.small, 0.0, 0.0}}, c.small}}, 0.0035);
+            {{{{-1.004 * c.large, 0.0, 0.0}}, c.large}, {{{1.004 * c.small, 0.0, 0.0}}, c.small}},
+            std::min(0.0035, c.small / 6.1));
         advance_to(*solver, 0.04);
         const Cap large = cap_of(*solver, 0), small = cap_of(*solver, 1);
         const double curvature = partition_curvature(*solver, 0, 1);

@@ -170,26 +170,29 @@ double MelpSolver::strongest_pull() const {
     return strongest;
 }
 
-/// Gravity, air and surfactant act along the film; what fine particles will take is in coarse_.velocity then.
+/// Gravity, air and surfactant act along the film; what fine particles will take is in coarse_.velocity then. All see
+/// the drag at the end of the step: it would weaken one that balances the others, the more the longer the step.
 SurfactantStep MelpSolver::push_along_film(double dt) {
     const std::size_t count = coarse_.size();
-    const double density = liquid_density();
+    std::vector<double> inertia(count);  // of film and drag, per area
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3& n = geometry_.normal[i];
-        const double drag = dt * options_.air_drag / (density * films_.thickness[i]);
-        Vec3 u = films_.along[i] + dt * input_.films->material.gravity + drag * options_.wind;
+        const double film = liquid_density() * films_.thickness[i], drag = dt * options_.air_drag;
+        inertia[i] = film + drag;
+        Vec3 u = film * (films_.along[i] + dt * input_.films->material.gravity) + drag * options_.wind;
         u -= dot(u, n) * n;
-        coarse_.velocity[i] = u / (1.0 + drag) + dot(coarse_.velocity[i], n) * n;
+        coarse_.velocity[i] = u / inertia[i] + dot(coarse_.velocity[i], n) * n;
     }
     pull_edges(dt);
     marangoni_.assign(count, {});
     if (fine_.size() == 0) return {};  // constant tension
-    SurfactantStep step = solve_surfactant(geometry_, coarse_.position, films_, coarse_.velocity, law_, density, dt,
+    SurfactantStep step = solve_surfactant(geometry_, coarse_.position, films_, coarse_.velocity, law_, inertia, dt,
                                            options_.solver_tolerance);
     const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, step.concentration);
     for (std::size_t i = 0; i < count; ++i) {
-        marangoni_[i] = (-2.0 * law_.thermal_energy() * geometry_.area[i]) * slope[i];
-        coarse_.velocity[i] += (dt / (density * films_.liquid_volume[i])) * marangoni_[i];
+        const Vec3 pull = (-2.0 * law_.thermal_energy()) * slope[i];
+        marangoni_[i] = geometry_.area[i] * pull;
+        coarse_.velocity[i] += (dt / inertia[i]) * pull;
     }
     return step;
 }

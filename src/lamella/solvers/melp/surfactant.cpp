@@ -10,12 +10,12 @@ SurfactantStep solve_surfactant(const Geometry& geometry,
                                 const Films& films,
                                 std::span<const Vec3> velocity,
                                 const film::SurfactantLaw& law,
-                                double liquid_density,
+                                std::span<const double> inertia,
                                 double dt,
                                 double tolerance) {
     const Neighbors& same = geometry.neighbors.same;
     const std::size_t count = geometry.size();
-    const auto beta = [&](std::size_t i) { return 2.0 * law.thermal_energy() / (liquid_density * films.thickness[i]); };
+    const auto beta = [&](std::size_t i) { return 2.0 * law.thermal_energy() / inertia[i]; };
     std::vector<double> coupling(same.index.size()), diagonal(count), right(count), scale(count);
     const std::vector<double> stretch = divergence(geometry, position, velocity);
     parallel_for(count, [&](std::size_t i) {

@@ -16,20 +16,21 @@ struct SurfactantStep {
 /// Surfactant at the end of a step in which it drives the flow along the film and is carried by it: elastic waves
 /// faster than the step are damped, not unstable.
 ///
-/// From Gamma = Gamma* (1 - dt div u) and u = u* - dt 2 R T / (rho eta) grad Gamma, times a_i:
+/// From Gamma = Gamma* (1 - dt div u) and u = u* - dt 2 R T / m grad Gamma, times a_i:
 ///
 ///   (a_i / Gamma*_i) Gamma_i - dt^2 sum_j a_i a_j beta_ij omega_ij (Gamma_j - Gamma_i) = a_i (1 - dt div u*_i)
 ///
-/// beta = 2 R T / (rho eta), harmonic mean of a pair, omega the Laplacian's weights: symmetric, positive definite;
-/// edges let nothing through. [method sheet 6 R, eq. 8]
+/// beta = 2 R T / m, harmonic mean of a pair, omega the Laplacian's weights: symmetric, positive definite; edges let
+/// nothing through. [method sheet 6 R, eq. 8]
 ///
 /// @param velocity  u*, all forces but the surfactant's applied [m/s]
+/// @param inertia   m, that of the film per area, rho eta, and what drag of the air adds in a step [kg/m^2]
 SurfactantStep solve_surfactant(const Geometry& geometry,
                                 std::span<const Vec3> position,
                                 const Films& films,
                                 std::span<const Vec3> velocity,
                                 const film::SurfactantLaw& law,
-                                double liquid_density,
+                                std::span<const double> inertia,
                                 double dt,
                                 double tolerance);
 
