@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "caps.h"
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <utility>
 
@@ -84,10 +86,11 @@ TEST(UnequalBubbles, HaveThePartitionThatTheirPressuresAskFor) {
                                       {0.05, 0.04, 3.77},
                                       {0.05, 0.045, 1.68}}};
     for (const Case& c : cases) {
-        auto solver = settling_cluster(
-            {{{{-1.004 * c.large, 0.0, 0.0}}, c.large}, {{{1.004 * c.small, 0.0, 0.0}}, c.small}},
-            std::min(0.0035, c.small / 6.1));
-        advance_to(*solver, 0.04);
+        auto solver =
+            settling_cluster({{{{-1.004 * c.large, 0.0, 0.0}}, c.large}, {{{1.004 * c.small, 0.0, 0.0}}, c.small}},
+                             std::min(0.0035, c.small / 7.5));
+        const double settled = c.curvature < 3.0 ? 0.15 : 0.04;  // flat partitions come to rest slowly
+        advance_to(*solver, settled);
         const Cap large = cap_of(*solver, 0), small = cap_of(*solver, 1);
         const double curvature = partition_curvature(*solver, 0, 1);
         std::printf("curvature %.3f of %.3f, of the caps %.3f; angle %.2f\n", curvature, c.curvature,
