@@ -95,6 +95,10 @@ void MelpSolver::save(sim::StateWriter& out) const {
     out.write_value("initial_liquid", initial_liquid_);
     out.write_value("left_liquid", left_liquid_);
     out.write_value("next_event", static_cast<std::int64_t>(next_event_));
+    std::vector<double> solids;
+    for (const film::Body& body : bodies_)
+        for (const Vec3& x : {body.center, body.velocity, body.force}) append(solids, x);
+    out.write("solids", std::span<const double>(solids));
     const std::vector<std::int32_t> released(released_.begin(), released_.end());
     out.write("released", std::span<const std::int32_t>(released));
     std::vector<std::int32_t> touching;
@@ -153,11 +157,22 @@ void MelpSolver::load(sim::StateReader& in) {
     in.read("released", input_.films->releases.size(), released);
     released_.assign(released.begin(), released.end());
     load_contacts(in);
+    load_solids(in);
     rims_ = start_rims(*input_.films, options_);
     set_rims(time_);
     update_shape();
     follow_contacts(time_);
     update_liquid();
+}
+
+void MelpSolver::load_solids(sim::StateReader& in) {
+    bodies_ = film::bodies_at_start(input_.films->solids);
+    film::move_bodies(input_.films->solids, time_, 0.0, bodies_);
+    std::vector<double> solids;
+    in.read("solids", 9 * bodies_.size(), solids);
+    const double* from = solids.data();
+    for (film::Body& body : bodies_)
+        for (Vec3* x : {&body.center, &body.velocity, &body.force}) take(from, *x);
 }
 
 void MelpSolver::load_contacts(sim::StateReader& in) {

@@ -12,7 +12,7 @@ namespace lamella::melp {
 
 /// What coarse particles near a rim see beyond it: pictures of themselves and of their neighbors. Rows as of Neighbors;
 /// weights are symmetric, w of (i, picture of j) = w of (j, picture of i), by the mean of the two squared distances:
-/// for straight wires and plates these are equal.
+/// for straight wires and plates these are equal. Behind balls and sticks they are narrowed as the pictures are.
 struct Images {
     std::vector<std::uint32_t> start;  ///< size + 1, or empty where no film has a rim
     std::vector<std::uint32_t> index;  ///< whose picture

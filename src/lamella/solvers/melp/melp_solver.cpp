@@ -7,6 +7,7 @@
 #include "lamella/solvers/melp/operators.h"
 #include "lamella/solvers/melp/redistribution.h"
 #include "lamella/solvers/melp/refusals.h"
+#include "lamella/solvers/melp/solids.h"
 #include "lamella/solvers/melp/start.h"
 #include "lamella/solvers/melp/volumes.h"
 
@@ -49,6 +50,7 @@ void MelpSolver::start(const sim::StartContext&) {
     gas_ = std::move(start.gas);
     even_ = std::move(start.even);
     rims_ = std::move(start.rims);
+    bodies_ = film::bodies_at_start(input_.films->solids);
     spacing_ = start.spacing;
     set_rims(0.0);
     sort_fine_particles(fine_, spacing_);
@@ -66,6 +68,7 @@ void MelpSolver::start(const sim::StartContext&) {
     for (const EvenFilm& film : even_) initial_liquid_ += film.liquid_volume;
     release_bubbles();
     apply_events();
+    burst_on_solids();
 }
 
 /// Vertices of a mesh are no even layout: the first passes of redistribution are made before anything moves.
@@ -110,6 +113,7 @@ sim::StepReport MelpSolver::advance(double time_limit) {
     filter_short_waves();
     give_to_fine(dt);
     move_coarse(dt, normal);
+    move_solids(dt);
     set_rims(time_ + dt);
     keep_coarse_inside();
     update_shape();
@@ -124,6 +128,7 @@ sim::StepReport MelpSolver::advance(double time_limit) {
     step_ = dt;
     ++steps_;
     burst_on_walls();
+    burst_on_solids();
     apply_events();
     release_bubbles();
     return {.step = dt,
@@ -137,11 +142,19 @@ double MelpSolver::choose_step(double time_limit) const {
     double fastest = fastest_edge();
     for (const Vec3& u : coarse_.velocity) fastest = std::max(fastest, norm(u));
     for (const Vec3& u : fine_.velocity) fastest = std::max(fastest, norm(u));
-    fastest = std::max(fastest, rims_.fastest());
+    fastest = std::max({fastest, rims_.fastest(), film::fastest(input_.films->solids)});
+    for (const film::Body& body : bodies_)
+        if (body.free) fastest = std::max(fastest, norm(body.velocity));
     const double farthest = options_.cfl * spacing_, pull = strongest_pull();
     double dt = options_.largest_step > 0.0 ? options_.largest_step : std::numeric_limits<double>::infinity();
     if (fastest > 0.0) dt = std::min(dt, farthest / fastest);
     if (pull > 0.0) dt = std::min(dt, std::sqrt(2.0 * farthest / pull));
+    for (const film::Body& body : bodies_) {
+        constexpr double kOfSwing =
+            0.2;  // of the time that a solid needs at least for a radian of swinging on its film
+        const double tension = input_.films->material.film_tension();
+        if (body.free) dt = std::min(dt, kOfSwing * std::sqrt(body.mass / (2.0 * std::numbers::pi * tension)));
+    }
     if (options_.steps_per_period > 0.0) dt = std::min(dt, slowest_period(gas_) / options_.steps_per_period);
     const double left = time_limit - time_;
     if (left <= dt) return left;
@@ -367,19 +380,33 @@ void MelpSolver::move_fine(double dt) {
             fine_.thickness[p] *= std::exp(-dt * (slope[0][0] + slope[1][1] + slope[2][2]));
     });
     transfer_->project(geometry_.patch, geometry_.normal, fine_);
-    keep_inside({rims_now_, coarse_.position, coarse_.region, spacing_, 0.0}, fine_.region, fine_.position,
-                fine_.velocity);
+    keep_inside({rims_now_, coarse_.position, coarse_.region, spacing_, 0.0}, fine_.region, fine_.normal,
+                fine_.position, fine_.velocity);
     constexpr std::int64_t kSortEvery = 32;
     if ((steps_ + 1) % kSortEvery == 0) sort_fine_particles(fine_, spacing_);
 }
 
-void MelpSolver::set_rims(double time) { rims_now_ = rims_.at(time); }
+void MelpSolver::set_rims(double time) {
+    rims_now_ = rims_.at(time);
+    append_solids(bodies_, gas_, rims_now_);
+}
+
+/// Solids go on to the end of the step; free ones by their weight and what films pull them with.
+void MelpSolver::move_solids(double dt) {
+    pull_solids(coarse_, geometry_, films_.tension, spacing_, bodies_);
+    for (film::Body& body : bodies_) {
+        if (!body.free) continue;
+        const Vec3 pull = body.force / body.mass + input_.films->material.gravity;
+        body.velocity = (body.velocity + dt * pull) / (1.0 + dt * options_.damping);
+    }
+    film::move_bodies(input_.films->solids, time_ + dt, dt, bodies_);
+}
 
 /// Coarse particles nearer to a rim than this would count its pictures double.
 void MelpSolver::keep_coarse_inside() {
     constexpr double kNearest = 0.2;  // spacings
     keep_inside({rims_now_, coarse_.position, coarse_.region, spacing_, kNearest * spacing_}, coarse_.region,
-                coarse_.position, coarse_.velocity);
+                coarse_.frame_normal, coarse_.position, coarse_.velocity);
 }
 
 void MelpSolver::update_shape() { geometry_ = geometry_of(coarse_, support_radius(), rims_now_); }
