@@ -72,6 +72,7 @@ Images find_images(std::span<const RimPiece> pieces,
     for (const auto& row : rows) {
         for (const Found& f : row) {
             images.index.push_back(f.source);
+            images.follow.push_back(f.root);
             images.mirror.push_back(f.mirror);
             images.weight.push_back(f.root * kernel.value(f.square));
             images.laplacian.push_back(f.root * kernel.laplacian_weight(f.square));

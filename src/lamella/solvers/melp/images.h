@@ -21,6 +21,9 @@ struct Images {
     std::vector<Vec3> place;  ///< of the picture [m]
     std::vector<Vec3> normal;
     std::vector<std::uint32_t> mirror;  ///< place in `mirrors`
+    /// How far the picture moves, over how far its particle does along a ball or stick; 1 behind wires and plates. Of
+    /// both pictures of a pair together, the geometric mean.
+    std::vector<double> follow;
     std::vector<Mirror> mirrors;
 
     std::size_t begin(std::size_t i) const { return start.empty() ? 0 : start[i]; }
