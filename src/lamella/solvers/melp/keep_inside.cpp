@@ -62,9 +62,15 @@ private:
         constexpr double kAhead = 1e-3;  // of the radius: less, and the film lies across the outermost point
         const bool across = norm(along) < kAhead * piece.radius;
         const Vec3 inward = across ? frame_of(normal).e1 : along / norm(along);
-        const double outward = dot(arm, inward);
         const Vec3 foot = piece.foot(x).value_or(middle);
-        return Edge{foot, inward, std::sqrt(outward * outward + missing) - outward};
+        // Beside a stick only what leads away from its axis counts.
+        Vec3 away = inward;
+        const Vec3 from_middle = middle - piece.a;
+        if (squared_norm(from_middle) < (1.0 - 1e-9) * squared_norm(piece.b))
+            away -= (dot(inward, piece.b) / squared_norm(piece.b)) * piece.b;
+        const double square = squared_norm(away), outward = dot(arm, away);
+        if (!(square > 0.0)) return std::nullopt;
+        return Edge{foot, inward, (std::sqrt(outward * outward + square * missing) - outward) / square};
     }
 
     const RimNeighbors& near_;

@@ -332,15 +332,17 @@ void MelpSolver::give_back(const std::vector<Vec3>& momentum) {
 /// liquid behind, they take the velocity of the place they come to.
 void MelpSolver::move_coarse(double dt, const NormalStep& step) {
     const std::vector<Vec3> mean = region_velocities();
+    const bool stirred = std::any_of(bodies_.begin(), bodies_.end(), [](const film::Body& b) { return b.wet; });
     std::vector<Vec3> shift = options_.redistribution ? evening_shift(geometry_, coarse_, gas_.size(), spacing_)
                                                       : std::vector<Vec3>(coarse_.size());
     const std::vector<Tensor> slope = gradient(geometry_, coarse_.position, coarse_.velocity);
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         const Vec3& n = geometry_.normal[i];
         const auto region = static_cast<std::size_t>(coarse_.region[i]);
-        // Those of a film that has burst go with the liquid: edges move that far in a step.
+        // Those of a film that has burst go with the liquid: edges move that far in a step. So do those of a film that
+        // solids are in: the liquid flows around them, and does not pile up before them.
         const bool torn = gas_[region].burst;
-        const Vec3& carried = torn ? coarse_.velocity[i] : mean[region];
+        const Vec3& carried = torn || (stirred && gas_[region].held) ? coarse_.velocity[i] : mean[region];
         if (torn) shift[i] = {};
         const Vec3 along = dt * (carried - dot(carried, n) * n);
         const Vec3 liquid = dt * (coarse_.velocity[i] - dot(coarse_.velocity[i], n) * n);

@@ -39,9 +39,9 @@ Spread spread_of(const std::vector<double>& value, const std::vector<double>& we
 
 constexpr double kEnds = 1.5;  // [spacings] of the nearest rim: films end there, farther away in holes
 
-/// A stick shows as balls in a row, so near that dents are a hundredth of the radius deep.
+/// A stick shows as balls in a row, so near that dents are a thousandth of the radius deep.
 void append_balls(const film::Body& body, std::vector<sim::Solid>& balls) {
-    constexpr double kStep = 0.28;  // radii
+    constexpr double kStep = 0.09;  // radii
     const int steps = static_cast<int>(std::ceil(2.0 * norm(body.arm) / (kStep * body.radius)));
     for (int k = 0; k <= steps; ++k) {
         const double s = steps > 0 ? 2.0 * k / steps - 1.0 : 0.0;

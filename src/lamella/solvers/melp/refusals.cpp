@@ -41,7 +41,7 @@ void refuse_unknown_solids(const film::Problem& films, const Options& options) {
     for (const film::Solid& solid : films.solids) {
         if (solid.wet && (films.bubble_count() > 0 || options.rim != RimHold::kWire))
             throw InputError("melp: wet [[solid]]s are built for films on wires only; bubbles burst on wet = false");
-        if (solid.wet && solid.radius < kSmallest * films.edge_length)
+        if (solid.wet && solid.radius < 0.999 * kSmallest * films.edge_length)
             throw InputError(
                 fmt::format("solid.radius = {:.4g} m is too small for resolution.edge_length = {:.4g} m: "
                             "three of these at least will do",
