@@ -80,7 +80,7 @@ void MelpSolver::save(sim::StateWriter& out) const {
     std::vector<double> gas, even;
     for (const Gas& g : gas_) {
         number.push_back(g.region);
-        gas.insert(gas.end(), {g.amount, g.volume, g.calibration, g.film_radius, g.balanced});
+        gas.insert(gas.end(), {g.amount, g.volume, g.calibration, g.film_radius, g.balanced, g.cell});
         kind.insert(kind.end(), {g.closed ? 1 : 0, g.held ? 1 : 0, g.burst ? 1 : 0, g.gone ? 1 : 0});
     }
     for (const EvenFilm& film : even_) even.insert(even.end(), {film.liquid_volume, film.surfactant});
@@ -125,21 +125,22 @@ void MelpSolver::load(sim::StateReader& in) {
     std::vector<double> gas, even;
     in.read("region/number", regions, number);
     in.read("region/kind", 4 * regions, kind);
-    in.read("region/gas", 5 * regions, gas);
+    in.read("region/gas", 6 * regions, gas);
     in.read("region/even_film", 2 * regions, even);
     gas_.assign(regions, {});
     even_.assign(regions, {});
     for (std::size_t r = 0; r < regions; ++r) {
         gas_[r] = {.region = number[r],
-                   .amount = gas[5 * r],
-                   .volume = gas[5 * r + 1],
-                   .calibration = gas[5 * r + 2],
-                   .balanced = gas[5 * r + 4],
+                   .amount = gas[6 * r],
+                   .volume = gas[6 * r + 1],
+                   .calibration = gas[6 * r + 2],
+                   .balanced = gas[6 * r + 4],
                    .closed = kind[4 * r] != 0,
                    .held = kind[4 * r + 1] != 0,
                    .burst = kind[4 * r + 2] != 0,
                    .gone = kind[4 * r + 3] != 0,
-                   .film_radius = gas[5 * r + 3]};
+                   .cell = gas[6 * r + 5],
+                   .film_radius = gas[6 * r + 3]};
         even_[r] = {even[2 * r], even[2 * r + 1], gas_[r].held};
     }
     spacing_ = in.read_double("spacing");

@@ -71,6 +71,7 @@ private:
     void pull_edges(double dt);
     void vent(double dt);
     void clear_edges();
+    void keep_spacing();
     void apply_events();
     void apply(const film::Event& event);
     void move_solids(double dt);
@@ -99,6 +100,7 @@ private:
     void update_shape();
     void update_liquid();
     void give_back(const std::vector<Vec3>& momentum);
+    void add_uniform(const std::vector<Vec3>& missing, std::span<const double> weight);
     void follow_particle_volumes(double dt);
 
     std::vector<double> masses() const;

@@ -111,6 +111,7 @@ void append(Start& start,
             .volume = region.volume,
             .closed = region.volume > 0.0,
             .held = region.held,
+            .cell = region.area / static_cast<double>(std::max(region.coarse.position.size(), std::size_t{1})),
             .film_radius = std::sqrt(region.area / std::numbers::pi)};
     if (gas.closed) {
         const double gauge = 2.0 / 3.0 * material.film_tension() * region.area / region.volume;
