@@ -81,6 +81,8 @@ film-drainage|melp/film-drainage-small|10||An upright film in a frame drains
 fingers-of-particles|melp/rayleigh-taylor-small|14||Thick film above thin film, made of particles, sinks in fingers
 deforming-rectangle|melp/deforming-rectangle-small|24||The upper side of a frame swings to the front, and the film with it
 half-bubble|melp/half-bubble-small|10||Half a bubble on a plate, in the wind
+ball-on-a-film|melp/ball-on-film-small|5||A ball has fallen on a film, which catches it
+stick-of-particles|melp/stick-small|18|--camera -60,35 --exposure 2|A stick was dragged through a film that is thicker above
 bursting-disk|melp/burst-disk-small|7||A film in a ring was pricked: the hole's edge gathers the liquid
 bursting-giant|melp/giant-bubble-small|4||A giant bubble, pricked from the right, a few milliseconds later
 four-bubbles|melp/four-bubbles-small|10|--exposure 0.8|Four bubbles have flown together

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "lamella/core/vec.h"
+#include "lamella/film/solid.h"
 #include "lamella/film/wire.h"
 #include "lamella/mesh/foam_mesh.h"
 
@@ -71,29 +70,6 @@ struct Event {
     double duration = 0.0;                      ///< inflate: how long it takes, for the solvers that move [s]
     Vec3 center{};                              ///< puncture: the film nearest to it gets a hole [m]
     double radius = 0.0;                        ///< puncture: of the hole; 0: as small as can be resolved [m]
-};
-
-/// A ball that a film runs around, as a stick through it, and that takes the film with it. It moves and turns as it is
-/// told, once or in steps like a leg, or freely. [[solid]] of a scene.
-struct Solid {
-    Vec3 center;         ///< at time 0 [m]
-    double radius = 0.0; ///< [m]
-    Vec3 velocity;       ///< as it is told; of a free one at the start [m/s]
-    Vec3 spin;           ///< angular velocity, likewise [rad/s]
-    double start = 0.0;  ///< it moves from here [s] ...
-    double end = std::numeric_limits<double>::infinity();  ///< ... to here
-    double period = 0.0;  ///< > 0: it does so again each period, and between is out of the film, on its way back [s]
-    Vec3 stride;          ///< how much farther each period begins [m]
-    bool free = false;    ///< what the film does to it moves it
-    double mass = 0.0;    ///< of a free one, beyond that of the film that it covers [kg]
-
-    double since_period(double time) const { return period > 0.0 ? time - period * std::floor(time / period) : time; }
-    bool moves(double time) const { return since_period(time) >= start && since_period(time) < end; }
-    bool in_film(double time) const { return period == 0.0 || moves(time); }
-    Vec3 center_at(double time) const {
-        const Vec3 begin = period > 0.0 ? center + std::floor(time / period) * stride : center;
-        return begin + (std::clamp(since_period(time), start, end) - start) * velocity;
-    }
 };
 
 /// A plane that bubbles rest on without wetting it; they stay on the side that the normal points to. [[wall]] of a scene.

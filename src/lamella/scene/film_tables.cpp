@@ -271,7 +271,7 @@ std::vector<FilmTableInfo> film_table_infos() {
             info_of<WireTable>("wire", "a wire that holds films, at rest or moving: [[wire]]", true),
             info_of<EventTable>("event", "what happens to bubbles on the way: [[event]]", true),
             info_of<VortexTable>("vortex", "what swirls in the film at the start: [[vortex]]", true),
-            info_of<SolidTable>("solid", "a ball that stirs the film: [[solid]]", true),
+            info_of<SolidTable>("solid", "a ball or stick in the film: [[solid]]", true),
             info_of<WallTable>("wall", "a plane that bubbles rest on: [[wall]]", true),
             info_of<FaucetTable>("faucet", "bubbles that enter on the way: [[faucet]]", true)};
 }

@@ -287,12 +287,14 @@ struct SolidTable {
     Vec3 stride;
     bool free = false;
     double mass = 0.0;
+    Vec3 arm;
+    bool wet = true;
 
     template <class Visitor>
     void visit(Visitor&& option) {
         option("center", center, sim::any_number(), {"where it is at first", "length"});
-        option("radius", radius, sim::at_least(0.0), {"of the ball", "length"});
-        option("velocity", velocity, sim::any_number(), {"of the ball; of a free one at the start", "length/time"});
+        option("radius", radius, sim::at_least(0.0), {"of the ball or stick", "length"});
+        option("velocity", velocity, sim::any_number(), {"of it; of a free one at the start", "length/time"});
         option("spin", spin, sim::any_number(), {"angular velocity, likewise", "1/time"});
         option("start", start, sim::at_least(0.0), {"when it begins to move", "time"});
         option("end", end, sim::at_least(0.0), {"when it stops; 0: never", "time"});
@@ -302,6 +304,8 @@ struct SolidTable {
         option("stride", stride, sim::any_number(), {"how much farther it begins each period", "length"});
         option("free", free, {"true: what the film does to it moves it"});
         option("mass", mass, sim::at_least(0.0), {"of a free one, beyond that of the film that it covers", "mass"});
+        option("arm", arm, sim::any_number(), {"of a stick with round ends: from its middle to the center of an end; 0: a ball", "length"});
+        option("wet", wet, {"true: films slide on it; false: they burst where it touches them"});
     }
 };
 

@@ -214,8 +214,8 @@ Scene parse_scene(std::string_view text,
             !(solver.films && scene.root.find(other.name)->array() != nullptr))
             scene.notes.push_back(fmt::format("[{}] is not used by solver {}", other.name, solver.name));
 
-    for (const char* table : {"vortex", "solid"})
-        if (solver.films && !solver.stirring && scene.root.find(table) != nullptr)
+    for (const auto& [table, used] : {std::pair("vortex", solver.vortices), {"solid", solver.solids}})
+        if (solver.films && !used && scene.root.find(table) != nullptr)
             scene.notes.push_back(fmt::format("[[{}]] is not used by solver {}", table, solver.name));
 
     scene.time = sim::read_options<TimeOptions>(table_of(scene, "time"), units_of(solver));

@@ -50,7 +50,8 @@ struct SolverEntry {
     bool films = false;  ///< starts from the film tables of a scene (SolverInput::films)
     bool cuda = false;   ///< can compute on a GPU
     bool processes = false;  ///< several processes can compute one run; Solver says how its functions then work
-    bool stirring = false;  ///< uses those that stir the liquid of a film: [[vortex]], [[solid]]
+    bool vortices = false;  ///< uses [[vortex]]
+    bool solids = false;    ///< uses [[solid]]
     std::function<std::unique_ptr<Solver>(const SolverInput&)> create;  ///< checks the options, does no work
     std::function<std::vector<OptionInfo>()> describe;
     std::function<Node(const Node& options)> resolve;  ///< the options with every default filled in

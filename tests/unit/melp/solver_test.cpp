@@ -180,7 +180,6 @@ TEST(MelpSolver, RefusesFilmsAndOptionsThatItDoesNotKnow) {
     EXPECT_THROW(solver_of(ball + "[[event]]\nkind = \"inflate\"\nfactor = 2.0\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[[event]]\nregion = 0\n"), InputError);
     EXPECT_THROW(solver_of(std::string(kBurst) + "fine_ratio = 0\n"), InputError);
-    EXPECT_THROW(solver_of(ball + "[[solid]]\nradius = 0.005\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[[tension]]\nb = 1\nfactor = 2.0\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[material]\nsurfactant = 2e-5\n"), InputError);
     EXPECT_THROW(solver_of(ball + "[melp]\nfine_ratio = -1\n"), InputError);

@@ -25,6 +25,8 @@ film::Solid solid_of(const SolidTable& table, const SourceLocation& where) {
     solid.stride = table.stride;
     solid.free = table.free;
     solid.mass = table.mass;
+    solid.arm = table.arm;
+    solid.wet = table.wet;
     if (table.end > 0.0) solid.end = table.end;
     return solid;
 }

@@ -80,7 +80,7 @@ void MelpSolver::save(sim::StateWriter& out) const {
     std::vector<double> gas, even;
     for (const Gas& g : gas_) {
         number.push_back(g.region);
-        gas.insert(gas.end(), {g.amount, g.volume, g.calibration, g.film_radius, g.balanced});
+        gas.insert(gas.end(), {g.amount, g.volume, g.calibration, g.film_radius, g.balanced, g.cell});
         kind.insert(kind.end(), {g.closed ? 1 : 0, g.held ? 1 : 0, g.burst ? 1 : 0, g.gone ? 1 : 0});
     }
     for (const EvenFilm& film : even_) even.insert(even.end(), {film.liquid_volume, film.surfactant});
@@ -95,6 +95,10 @@ void MelpSolver::save(sim::StateWriter& out) const {
     out.write_value("initial_liquid", initial_liquid_);
     out.write_value("left_liquid", left_liquid_);
     out.write_value("next_event", static_cast<std::int64_t>(next_event_));
+    std::vector<double> solids;
+    for (const film::Body& body : bodies_)
+        for (const Vec3& x : {body.center, body.velocity, body.force}) append(solids, x);
+    out.write("solids", std::span<const double>(solids));
     const std::vector<std::int32_t> released(released_.begin(), released_.end());
     out.write("released", std::span<const std::int32_t>(released));
     std::vector<std::int32_t> touching;
@@ -121,21 +125,22 @@ void MelpSolver::load(sim::StateReader& in) {
     std::vector<double> gas, even;
     in.read("region/number", regions, number);
     in.read("region/kind", 4 * regions, kind);
-    in.read("region/gas", 5 * regions, gas);
+    in.read("region/gas", 6 * regions, gas);
     in.read("region/even_film", 2 * regions, even);
     gas_.assign(regions, {});
     even_.assign(regions, {});
     for (std::size_t r = 0; r < regions; ++r) {
         gas_[r] = {.region = number[r],
-                   .amount = gas[5 * r],
-                   .volume = gas[5 * r + 1],
-                   .calibration = gas[5 * r + 2],
-                   .balanced = gas[5 * r + 4],
+                   .amount = gas[6 * r],
+                   .volume = gas[6 * r + 1],
+                   .calibration = gas[6 * r + 2],
+                   .balanced = gas[6 * r + 4],
                    .closed = kind[4 * r] != 0,
                    .held = kind[4 * r + 1] != 0,
                    .burst = kind[4 * r + 2] != 0,
                    .gone = kind[4 * r + 3] != 0,
-                   .film_radius = gas[5 * r + 3]};
+                   .cell = gas[6 * r + 5],
+                   .film_radius = gas[6 * r + 3]};
         even_[r] = {even[2 * r], even[2 * r + 1], gas_[r].held};
     }
     spacing_ = in.read_double("spacing");
@@ -153,11 +158,22 @@ void MelpSolver::load(sim::StateReader& in) {
     in.read("released", input_.films->releases.size(), released);
     released_.assign(released.begin(), released.end());
     load_contacts(in);
+    load_solids(in);
     rims_ = start_rims(*input_.films, options_);
     set_rims(time_);
     update_shape();
     follow_contacts(time_);
     update_liquid();
+}
+
+void MelpSolver::load_solids(sim::StateReader& in) {
+    bodies_ = film::bodies_at_start(input_.films->solids);
+    film::move_bodies(input_.films->solids, time_, 0.0, bodies_);
+    std::vector<double> solids;
+    in.read("solids", 9 * bodies_.size(), solids);
+    const double* from = solids.data();
+    for (film::Body& body : bodies_)
+        for (Vec3* x : {&body.center, &body.velocity, &body.force}) take(from, *x);
 }
 
 void MelpSolver::load_contacts(sim::StateReader& in) {

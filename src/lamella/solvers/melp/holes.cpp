@@ -2,6 +2,7 @@
 
 #include "lamella/solvers/melp/bursting.h"
 #include "lamella/solvers/melp/melp_solver.h"
+#include "lamella/solvers/melp/solids.h"
 
 #include <fmt/format.h>
 
@@ -125,6 +126,16 @@ void MelpSolver::apply(const film::Event& event) {
     }
     const bool puncture = event.kind == film::Event::Kind::kPuncture;
     burst(at, event.radius, puncture ? "puncture" : "pop");
+}
+
+/// Dry solids burst what they touch.
+void MelpSolver::burst_on_solids() {
+    while (const std::optional<std::size_t> at = touching(bodies_, coarse_, gas_)) {
+        if (is_foam())
+            delete_bubble(static_cast<std::size_t>(coarse_.region[*at]));
+        else
+            burst(*at, 0.0, "puncture");
+    }
 }
 
 /// Opens a hole in the film around a coarse particle; one of radius 0 is as small as the spacing lets it be.

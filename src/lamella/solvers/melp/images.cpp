@@ -13,6 +13,7 @@ constexpr double kAgreeing = 0.2;  // least cosine between normals of one film
 struct Found {
     std::uint32_t source, mirror;
     double square;  // mean squared distance [m^2]
+    double root;    // of the narrowing, of the two pictures together
 };
 
 const Mirror* with_key(std::span<const Mirror> mirrors, std::uint32_t key) {
@@ -34,7 +35,7 @@ Images find_images(std::span<const RimPiece> pieces,
     std::vector<std::uint32_t> first{0}, source;
     std::vector<Vec3> place;
     for (std::size_t i = 0; i < count; ++i) {
-        append_mirrors(pieces, region[i], position[i], support_radius, images.mirrors);
+        append_mirrors(pieces, region[i], position[i], normal[i], support_radius, images.mirrors);
         for (std::size_t m = first.back(); m < images.mirrors.size(); ++m) {
             source.push_back(static_cast<std::uint32_t>(i));
             place.push_back(images.mirrors[m].place(position[i]));
@@ -59,7 +60,7 @@ Images find_images(std::span<const RimPiece> pieces,
                 if (square >= reach) return;
                 const double agree = 0.5 * (dot(normal[i], images.mirrors[m].normal(normal[j])) +
                                             dot(normal[j], back->normal(normal[i])));
-                if (agree > kAgreeing) rows[i].push_back({j, m, square});
+                if (agree > kAgreeing) rows[i].push_back({j, m, square, images.mirrors[m].root * back->root});
             });
             std::sort(rows[i].begin(), rows[i].end(), [](const Found& a, const Found& b) {
                 return a.source != b.source ? a.source < b.source : a.mirror < b.mirror;
@@ -71,9 +72,10 @@ Images find_images(std::span<const RimPiece> pieces,
     for (const auto& row : rows) {
         for (const Found& f : row) {
             images.index.push_back(f.source);
+            images.follow.push_back(f.root);
             images.mirror.push_back(f.mirror);
-            images.weight.push_back(kernel.value(f.square));
-            images.laplacian.push_back(kernel.laplacian_weight(f.square));
+            images.weight.push_back(f.root * kernel.value(f.square));
+            images.laplacian.push_back(f.root * kernel.laplacian_weight(f.square));
             images.place.push_back(place[f.mirror]);
             images.normal.push_back(images.mirrors[f.mirror].normal(normal[f.source]));
         }

@@ -12,7 +12,7 @@ namespace lamella::melp {
 
 /// What coarse particles near a rim see beyond it: pictures of themselves and of their neighbors. Rows as of Neighbors;
 /// weights are symmetric, w of (i, picture of j) = w of (j, picture of i), by the mean of the two squared distances:
-/// for straight wires and plates these are equal.
+/// for straight wires and plates these are equal. Behind balls and sticks they are narrowed as the pictures are.
 struct Images {
     std::vector<std::uint32_t> start;  ///< size + 1, or empty where no film has a rim
     std::vector<std::uint32_t> index;  ///< whose picture
@@ -21,6 +21,9 @@ struct Images {
     std::vector<Vec3> place;  ///< of the picture [m]
     std::vector<Vec3> normal;
     std::vector<std::uint32_t> mirror;  ///< place in `mirrors`
+    /// How far the picture moves, over how far its particle does along a ball or stick; 1 behind wires and plates. Of
+    /// both pictures of a pair together, the geometric mean.
+    std::vector<double> follow;
     std::vector<Mirror> mirrors;
 
     std::size_t begin(std::size_t i) const { return start.empty() ? 0 : start[i]; }

@@ -5,8 +5,10 @@
 #include "lamella/linalg/small_cholesky.h"
 #include "lamella/solvers/melp/keep_inside.h"
 #include "lamella/solvers/melp/operators.h"
+#include "lamella/solvers/melp/population.h"
 #include "lamella/solvers/melp/redistribution.h"
 #include "lamella/solvers/melp/refusals.h"
+#include "lamella/solvers/melp/solids.h"
 #include "lamella/solvers/melp/start.h"
 #include "lamella/solvers/melp/volumes.h"
 
@@ -24,6 +26,16 @@ namespace lamella::melp {
 namespace {
 
 constexpr double kMostOnEdges = 2.0;  // of the reference concentration
+
+/// sum a (u . n) n over each region [m^3/s].
+std::vector<Vec3> normal_flows(const Geometry& geometry, const CoarseParticles& coarse, std::size_t regions) {
+    std::vector<Vec3> flow(regions);
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+        const Vec3& n = geometry.normal[i];
+        flow[static_cast<std::size_t>(coarse.region[i])] += (geometry.area[i] * dot(coarse.velocity[i], n)) * n;
+    }
+    return flow;
+}
 
 }  // namespace
 
@@ -49,6 +61,7 @@ void MelpSolver::start(const sim::StartContext&) {
     gas_ = std::move(start.gas);
     even_ = std::move(start.even);
     rims_ = std::move(start.rims);
+    bodies_ = film::bodies_at_start(input_.films->solids);
     spacing_ = start.spacing;
     set_rims(0.0);
     sort_fine_particles(fine_, spacing_);
@@ -66,6 +79,7 @@ void MelpSolver::start(const sim::StartContext&) {
     for (const EvenFilm& film : even_) initial_liquid_ += film.liquid_volume;
     release_bubbles();
     apply_events();
+    burst_on_solids();
 }
 
 /// Vertices of a mesh are no even layout: the first passes of redistribution are made before anything moves.
@@ -110,11 +124,13 @@ sim::StepReport MelpSolver::advance(double time_limit) {
     filter_short_waves();
     give_to_fine(dt);
     move_coarse(dt, normal);
+    move_solids(dt);
     set_rims(time_ + dt);
     keep_coarse_inside();
     update_shape();
     move_fine(dt);
     clear_edges();
+    keep_spacing();
     time_ = dt >= time_limit - time_ ? time_limit : time_ + dt;
     follow_contacts(time_);
     update_liquid();
@@ -124,6 +140,7 @@ sim::StepReport MelpSolver::advance(double time_limit) {
     step_ = dt;
     ++steps_;
     burst_on_walls();
+    burst_on_solids();
     apply_events();
     release_bubbles();
     return {.step = dt,
@@ -137,11 +154,19 @@ double MelpSolver::choose_step(double time_limit) const {
     double fastest = fastest_edge();
     for (const Vec3& u : coarse_.velocity) fastest = std::max(fastest, norm(u));
     for (const Vec3& u : fine_.velocity) fastest = std::max(fastest, norm(u));
-    fastest = std::max(fastest, rims_.fastest());
+    fastest = std::max({fastest, rims_.fastest(), film::fastest(input_.films->solids)});
+    for (const film::Body& body : bodies_)
+        if (body.free) fastest = std::max(fastest, norm(body.velocity));
     const double farthest = options_.cfl * spacing_, pull = strongest_pull();
     double dt = options_.largest_step > 0.0 ? options_.largest_step : std::numeric_limits<double>::infinity();
     if (fastest > 0.0) dt = std::min(dt, farthest / fastest);
     if (pull > 0.0) dt = std::min(dt, std::sqrt(2.0 * farthest / pull));
+    for (const film::Body& body : bodies_) {
+        constexpr double kOfSwing =
+            0.2;  // of the time that a solid needs at least for a radian of swinging on its film
+        const double tension = input_.films->material.film_tension();
+        if (body.free) dt = std::min(dt, kOfSwing * std::sqrt(body.mass / (2.0 * std::numbers::pi * tension)));
+    }
     if (options_.steps_per_period > 0.0) dt = std::min(dt, slowest_period(gas_) / options_.steps_per_period);
     const double left = time_limit - time_;
     if (left <= dt) return left;
@@ -299,22 +324,28 @@ void MelpSolver::give_back(const std::vector<Vec3>& momentum) {
     std::vector<Vec3> velocity(coarse_.size());
     for (std::size_t i = 0; i < coarse_.size(); ++i) velocity[i] = velocity_of(i);
     const std::vector<Vec3> now = region_momenta(velocity);
-    std::vector<std::array<double, 9>> along(gas_.size());  // sum V n n^T
+    std::vector<Vec3> missing(gas_.size());
+    for (std::size_t r = 0; r < gas_.size(); ++r)
+        if (even_[r].liquid_volume == 0.0 && !gas_[r].held && !gas_[r].burst) missing[r] = momentum[r] - now[r];
+    add_uniform(missing, films_.liquid_volume);
+}
+
+/// Adds to each region the part along the normals of the uniform velocity U for which sum w n n^T U is what is missing.
+void MelpSolver::add_uniform(const std::vector<Vec3>& missing, std::span<const double> weight) {
+    std::vector<std::array<double, 9>> along(gas_.size());  // sum w n n^T
     for (std::size_t i = 0; i < coarse_.size(); ++i)
         for (std::size_t k = 0; k < 3; ++k)
             for (std::size_t m = 0; m < 3; ++m)
                 along[static_cast<std::size_t>(coarse_.region[i])][3 * k + m] +=
-                    films_.liquid_volume[i] * geometry_.normal[i][k] * geometry_.normal[i][m];
-    std::vector<Vec3> missing(gas_.size());
+                    weight[i] * geometry_.normal[i][k] * geometry_.normal[i][m];
+    std::vector<Vec3> added(gas_.size());
     for (std::size_t r = 0; r < gas_.size(); ++r) {
-        if (even_[r].liquid_volume > 0.0 || gas_[r].held || gas_[r].burst) continue;
-        std::array<double, 3> u{};
-        for (std::size_t k = 0; k < 3; ++k) u[k] = momentum[r][k] - now[r][k];
-        if (linalg::solve_positive<3>(along[r], u)) missing[r] = {{u[0], u[1], u[2]}};
+        std::array<double, 3> u{missing[r][0], missing[r][1], missing[r][2]};
+        if (squared_norm(missing[r]) > 0.0 && linalg::solve_positive<3>(along[r], u)) added[r] = {{u[0], u[1], u[2]}};
     }
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         const Vec3& n = geometry_.normal[i];
-        coarse_.velocity[i] += dot(missing[static_cast<std::size_t>(coarse_.region[i])], n) * n;
+        coarse_.velocity[i] += dot(added[static_cast<std::size_t>(coarse_.region[i])], n) * n;
     }
 }
 
@@ -322,15 +353,17 @@ void MelpSolver::give_back(const std::vector<Vec3>& momentum) {
 /// liquid behind, they take the velocity of the place they come to.
 void MelpSolver::move_coarse(double dt, const NormalStep& step) {
     const std::vector<Vec3> mean = region_velocities();
+    const bool stirred = std::any_of(bodies_.begin(), bodies_.end(), [](const film::Body& b) { return b.wet; });
     std::vector<Vec3> shift = options_.redistribution ? evening_shift(geometry_, coarse_, gas_.size(), spacing_)
                                                       : std::vector<Vec3>(coarse_.size());
     const std::vector<Tensor> slope = gradient(geometry_, coarse_.position, coarse_.velocity);
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         const Vec3& n = geometry_.normal[i];
         const auto region = static_cast<std::size_t>(coarse_.region[i]);
-        // Those of a film that has burst go with the liquid: edges move that far in a step.
+        // Those of a film that has burst go with the liquid: edges move that far in a step. So do those of a film that
+        // solids are in: the liquid flows around them, and does not pile up before them.
         const bool torn = gas_[region].burst;
-        const Vec3& carried = torn ? coarse_.velocity[i] : mean[region];
+        const Vec3& carried = torn || (stirred && gas_[region].held) ? coarse_.velocity[i] : mean[region];
         if (torn) shift[i] = {};
         const Vec3 along = dt * (carried - dot(carried, n) * n);
         const Vec3 liquid = dt * (coarse_.velocity[i] - dot(coarse_.velocity[i], n) * n);
@@ -370,19 +403,48 @@ void MelpSolver::move_fine(double dt) {
             fine_.thickness[p] *= std::exp(-dt * (slope[0][0] + slope[1][1] + slope[2][2]));
     });
     transfer_->project(geometry_.patch, geometry_.normal, fine_);
-    keep_inside({rims_now_, coarse_.position, coarse_.region, spacing_, 0.0}, fine_.region, fine_.position,
-                fine_.velocity);
+    keep_inside({rims_now_, coarse_.position, coarse_.region, spacing_, 0.0}, fine_.region, fine_.normal,
+                fine_.position, fine_.velocity);
     constexpr std::int64_t kSortEvery = 32;
     if ((steps_ + 1) % kSortEvery == 0) sort_fine_particles(fine_, spacing_);
 }
 
-void MelpSolver::set_rims(double time) { rims_now_ = rims_.at(time); }
+/// Films that stretch or shrink get or lose coarse particles. Their liquid, and so most of their momentum, is that of
+/// the fine ones; what is missing where they fly is given back with the rest. Films without fine particles get a
+/// uniform velocity along the normals, for their momentum is that of the particles.
+void MelpSolver::keep_spacing() {
+    if (!options_.insertion) return;
+    const std::vector<Vec3> before = normal_flows(geometry_, coarse_, gas_.size());
+    if (!repopulate(coarse_, geometry_, gas_)) return;
+    update_shape();
+    const std::vector<Vec3> after = normal_flows(geometry_, coarse_, gas_.size());
+    std::vector<Vec3> missing(gas_.size());
+    for (std::size_t r = 0; r < gas_.size(); ++r)
+        if (even_[r].liquid_volume > 0.0 && !gas_[r].held) missing[r] = before[r] - after[r];
+    add_uniform(missing, geometry_.area);
+}
+
+void MelpSolver::set_rims(double time) {
+    rims_now_ = rims_.at(time);
+    append_solids(bodies_, gas_, rims_now_);
+}
+
+/// Solids go on to the end of the step; free ones by their weight and what films pull them with.
+void MelpSolver::move_solids(double dt) {
+    pull_solids(coarse_, geometry_, films_.tension, spacing_, bodies_);
+    for (film::Body& body : bodies_) {
+        if (!body.free) continue;
+        const Vec3 pull = body.force / body.mass + input_.films->material.gravity;
+        body.velocity = (body.velocity + dt * pull) / (1.0 + dt * options_.damping);
+    }
+    film::move_bodies(input_.films->solids, time_ + dt, dt, bodies_);
+}
 
 /// Coarse particles nearer to a rim than this would count its pictures double.
 void MelpSolver::keep_coarse_inside() {
     constexpr double kNearest = 0.2;  // spacings
     keep_inside({rims_now_, coarse_.position, coarse_.region, spacing_, kNearest * spacing_}, coarse_.region,
-                coarse_.position, coarse_.velocity);
+                coarse_.frame_normal, coarse_.position, coarse_.velocity);
 }
 
 void MelpSolver::update_shape() { geometry_ = geometry_of(coarse_, support_radius(), rims_now_); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lamella/film/solid.h"
 #include "lamella/sim/registry.h"
 #include "lamella/sim/solver.h"
 #include "lamella/solvers/melp/contacts.h"
@@ -44,6 +45,7 @@ public:
     const CoarseParticles& coarse() const { return coarse_; }
     const FineParticles& fine() const { return fine_; }
     const std::vector<Gas>& gas() const { return gas_; }
+    const std::vector<film::Body>& bodies() const { return bodies_; }
     const std::vector<RimPiece>& rims() const { return rims_now_; }
     const Geometry& geometry() const { return geometry_; }
     const Films& films() const { return films_; }
@@ -69,8 +71,11 @@ private:
     void pull_edges(double dt);
     void vent(double dt);
     void clear_edges();
+    void keep_spacing();
     void apply_events();
     void apply(const film::Event& event);
+    void move_solids(double dt);
+    void burst_on_solids();
     void burst(std::size_t at, double radius, const std::string& kind);
     // Foams.
     bool is_foam() const;
@@ -87,6 +92,7 @@ private:
     double next_release() const;
     void follow_contacts(double time);
     void load_contacts(sim::StateReader& in);
+    void load_solids(sim::StateReader& in);
     std::vector<std::uint8_t> burst_regions() const;
     bool any_burst() const;
     void set_rims(double time);
@@ -94,6 +100,7 @@ private:
     void update_shape();
     void update_liquid();
     void give_back(const std::vector<Vec3>& momentum);
+    void add_uniform(const std::vector<Vec3>& missing, std::span<const double> weight);
     void follow_particle_volumes(double dt);
 
     std::vector<double> masses() const;
@@ -113,6 +120,7 @@ private:
     std::vector<Gas> gas_;
     std::vector<EvenFilm> even_;
     Rims rims_;
+    std::vector<film::Body> bodies_;  ///< the solids of the scene
     double spacing_ = 0.0;
     double time_ = 0.0;
     std::int64_t steps_ = 0;

@@ -172,7 +172,7 @@ public:
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) sum += other_[k] * v[other.index[k]];
         const Images& images = p_.geometry.images;
         for (std::size_t k = images.begin(i); k < images.end(i); ++k)
-            sum += pairs_.image[k] * images.mirrors[images.mirror[k]].sign * v[images.index[k]];
+            sum += pairs_.image[k] * images.mirrors[images.mirror[k]].sign * images.follow[k] * v[images.index[k]];
         return sum;
     }
 

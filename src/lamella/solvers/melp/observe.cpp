@@ -8,6 +8,8 @@
 #include "lamella/solvers/melp/surface.h"
 #include "lamella/solvers/melp/volumes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -36,6 +38,26 @@ Spread spread_of(const std::vector<double>& value, const std::vector<double>& we
 }
 
 constexpr double kEnds = 1.5;  // [spacings] of the nearest rim: films end there, farther away in holes
+
+/// A stick shows as balls in a row, so near that dents are a thousandth of the radius deep.
+void append_balls(const film::Body& body, std::vector<sim::Solid>& balls) {
+    constexpr double kStep = 0.09;  // radii
+    const int steps = static_cast<int>(std::ceil(2.0 * norm(body.arm) / (kStep * body.radius)));
+    for (int k = 0; k <= steps; ++k) {
+        const double s = steps > 0 ? 2.0 * k / steps - 1.0 : 0.0;
+        balls.push_back({body.center + s * body.arm, body.radius});
+    }
+}
+
+void append_scalars(std::size_t number, const film::Body& body, std::vector<sim::Scalar>& all) {
+    const auto add = [&](const char* what, const char* unit, const Vec3& value, const char* text) {
+        for (std::size_t k = 0; k < 3; ++k)
+            all.push_back({fmt::format("solid_{}_{}_{}", number, what, "xyz"[k]), unit, value[k], text});
+    };
+    add("center", "m", body.center, "of the solid");
+    add("velocity", "m/s", body.velocity, "of the solid");
+    add("force", "N", body.force, "of the films on the solid, in the last step");
+}
 
 void append(std::vector<double>& to, const Vec3& x) { to.insert(to.end(), x.v, x.v + 3); }
 
@@ -115,6 +137,8 @@ sim::Frame MelpSolver::frame() const {
     }
     for (sim::Field* field : {&fine, &region, &thickness, &velocity, &normal})
         frame.points.fields.push_back(std::move(*field));
+    for (const film::Body& body : bodies_)
+        if (body.in_film) append_balls(body, frame.solids);
     frame.scalars = scalars();
     return frame;
 }
@@ -182,6 +206,7 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
         {"coarse_particles", "-", static_cast<double>(coarse_.size()), "that carry the shape"},
         {"fine_particles", "-", static_cast<double>(fine_.size()), "that are the liquid"},
     };
+    for (std::size_t b = 0; b < bodies_.size(); ++b) append_scalars(b, bodies_[b], scalars);
     constexpr std::size_t kMostBubbles = 12;
     for (std::size_t r = 0; r < std::min(gas_.size(), kMostBubbles); ++r)
         scalars.push_back({"gauge_pressure_" + std::to_string(gas_[r].region), "Pa", gas_[r].balanced,

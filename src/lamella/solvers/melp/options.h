@@ -71,6 +71,7 @@ struct Options {
     bool joining = true;
     double joining_delay = 0.0;
     bool redistribution = true;
+    bool insertion = true;
     double volume_rate = 20.0;
     double thickness_rate = 0.2;
     int slow_motion = 15;
@@ -126,6 +127,9 @@ struct Options {
                {"from the first contact until films begin to join; a fifth of it later they have", "time",
                 "[Deng22]: a threshold"});
         option("redistribution", redistribution, {"coarse particles are kept evenly spread"});
+        option("insertion", insertion,
+               {"films that stretch get coarse particles, those that shrink lose some: the spacing is kept", "-",
+                "[method sheet 7]"});
         option("volume_rate", volume_rate, sim::at_least(0.0),
                {"at which the gas volume that films have swept follows the particles' own", "1/time",
                 "[method sheet 16.2]"});

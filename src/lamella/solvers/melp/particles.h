@@ -71,6 +71,7 @@ struct Gas {
     bool held = false;         ///< by rims: it does not fly
     bool burst = false;        ///< its film has a hole
     bool gone = false;         ///< it has burst at once, or is a part of another bubble now
+    double cell = 0.0;         ///< area per coarse particle at the start [m^2]
     double film_radius = 0.0;  ///< of the disk that has the area of a film without gas [m]
 
     /// Above that of the outside air [Pa].

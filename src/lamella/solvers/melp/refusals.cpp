@@ -35,6 +35,29 @@ void refuse_coarse_contacts(const film::Problem& films) {
     }
 }
 
+/// Films slide on wet solids, burst on dry ones, and pull free balls.
+void refuse_unknown_solids(const film::Problem& films, const Options& options) {
+    constexpr double kSmallest = 3.0;  // spacings
+    for (const film::Solid& solid : films.solids) {
+        if (solid.wet && (films.bubble_count() > 0 || options.rim != RimHold::kWire))
+            throw InputError("melp: wet [[solid]]s are built for films on wires only; bubbles burst on wet = false");
+        if (solid.wet && solid.radius < 0.999 * kSmallest * films.edge_length)
+            throw InputError(
+                fmt::format("solid.radius = {:.4g} m is too small for resolution.edge_length = {:.4g} m: "
+                            "three of these at least will do",
+                            solid.radius, films.edge_length));
+        if (norm(solid.spin) > 0.0)
+            throw InputError("melp: solid.spin would do nothing: films slide on solids; use solver vortex_particle");
+        if (solid.free && (norm(solid.arm) > 0.0 || !solid.wet))
+            throw InputError("melp: solid.free is built for wet balls only");
+        if (solid.free && !(solid.mass > 0.0))
+            throw InputError("melp: solid.mass is missing: of the free ball, e.g. \"50 mg\"");
+        if (!solid.wet && options.fine_ratio == 0 && films.bubble_count() < 2)
+            throw InputError(
+                "melp.fine_ratio = 0: films burst only with fine particles, whose liquid the edge gathers");
+    }
+}
+
 }  // namespace
 
 void refuse_unknown_films(const film::Problem& films, const Options& options) {
@@ -61,7 +84,7 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
         else if (options.start.mode_amplitude != 0.0 && options.rim != RimHold::kWetPlate)
             throw InputError("melp.start.mode_amplitude: films that are held by wires start at rest");
     if (!films.tensions.empty()) throw InputError("melp: [[tension]] is not built yet; use solver equilibrium");
-    if (!films.solids.empty()) throw InputError("melp: [[solid]] is not built yet; use solver vortex_particle");
+    refuse_unknown_solids(films, options);
     if (!films.vortices.empty()) throw InputError("melp: [[vortex]] is not built yet; use solver vortex_particle");
     for (const film::Event& event : films.events) {
         if (event.kind == film::Event::Kind::kInflate)

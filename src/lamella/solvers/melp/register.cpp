@@ -13,6 +13,7 @@ void register_melp(sim::SolverRegistry& registry) {
         {.name = "melp",
          .summary = "thin films and foams by moving Eulerian-Lagrangian particles [Deng22]",
          .films = true,
+         .solids = true,
          .create =
              [](const sim::SolverInput& input) {
                  return std::make_unique<MelpSolver>(sim::read_options<Options>(input.options, kSi), input);

@@ -1,5 +1,7 @@
 #include "lamella/solvers/melp/rims.h"
 
+#include "lamella/film/solid.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -29,8 +31,24 @@ Tensor half_turn(const Vec3& e, double sign) {
 
 Vec3 unit(const Vec3& x) { return x / norm(x); }
 
+/// A film that meets a ball or stick at a right angle ends there on a line that turns, within the film, as the solid's
+/// surface does along it. What lies at `height` above it has a picture that is narrower by the ratio of the two arcs.
+double narrowing(const RimPiece& piece, const Vec3& foot, const Vec3& x, const Vec3& normal) {
+    const Vec3 middle = film::nearest_on_axis(piece.a, piece.b, x), outward = unit(foot - middle);
+    double curvature = 1.0 / piece.radius;
+    const bool side = squared_norm(piece.b) > 0.0 && std::abs(dot(middle - piece.a, piece.b)) < squared_norm(piece.b);
+    if (side) {
+        const Vec3 along = cross(normal, outward);
+        const double straight =
+            dot(along, piece.b) * dot(along, piece.b) / (squared_norm(piece.b) * squared_norm(along));
+        curvature *= squared_norm(along) > 0.0 ? 1.0 - straight : 0.0;
+    }
+    const double height = dot(x - foot, outward);
+    return std::max(1.0 - height * curvature, 0.0) / (1.0 + height * curvature);
+}
+
 /// The picture behind one piece, for films near `foot`.
-Mirror mirror_at(const RimPiece& piece, std::uint32_t index, const Vec3& foot, const Vec3& x) {
+Mirror mirror_at(const RimPiece& piece, std::uint32_t index, const Vec3& foot, const Vec3& x, const Vec3& normal) {
     Mirror mirror{};
     switch (piece.kind) {
         case RimKind::kLine:
@@ -43,7 +61,8 @@ Mirror mirror_at(const RimPiece& piece, std::uint32_t index, const Vec3& foot, c
             mirror.map = half_turn(piece.b, -1.0);
             break;
         case RimKind::kBall:
-            mirror.map = half_turn(unit(x - piece.a), -1.0);
+            mirror.map = half_turn(unit(x - film::nearest_on_axis(piece.a, piece.b, x)), -1.0);
+            mirror.root = std::sqrt(narrowing(piece, foot, x, normal));
             break;
     }
     mirror.sign = piece.slides() ? 1.0 : -1.0;
@@ -73,9 +92,10 @@ std::optional<Vec3> RimPiece::foot(const Vec3& x) const {
         case RimKind::kPlate:
             return x - dot(x - a, b) * b;
         case RimKind::kBall: {
-            const double distance = norm(x - a);
+            const Vec3 middle = film::nearest_on_axis(a, b, x);
+            const double distance = norm(x - middle);
             if (!(distance > 0.0)) return std::nullopt;
-            return a + (radius / distance) * (x - a);
+            return middle + (radius / distance) * (x - middle);
         }
     }
     return std::nullopt;
@@ -135,8 +155,12 @@ double Rims::fastest() const {
     return fastest;
 }
 
-void append_mirrors(
-    std::span<const RimPiece> pieces, std::int32_t region, const Vec3& x, double reach, std::vector<Mirror>& mirrors) {
+void append_mirrors(std::span<const RimPiece> pieces,
+                    std::int32_t region,
+                    const Vec3& x,
+                    const Vec3& normal,
+                    double reach,
+                    std::vector<Mirror>& mirrors) {
     const auto near = [&](const RimPiece& piece) -> std::optional<Vec3> {
         if (piece.region != region) return std::nullopt;
         std::optional<Vec3> foot = piece.foot(x);
@@ -146,16 +170,16 @@ void append_mirrors(
     for (std::size_t k = 0; k < pieces.size(); ++k) {
         const std::optional<Vec3> foot = near(pieces[k]);
         if (!foot) continue;
-        const Mirror one = mirror_at(pieces[k], static_cast<std::uint32_t>(k), *foot, x);
+        const Mirror one = mirror_at(pieces[k], static_cast<std::uint32_t>(k), *foot, x, normal);
         mirrors.push_back(one);
         if (pieces[k].corner_next < 0) continue;
         const auto next = static_cast<std::size_t>(pieces[k].corner_next);
         const std::optional<Vec3> other = near(pieces[next]);
         const Vec3 back = pieces[k].a - pieces[k].b, on = pieces[next].b - pieces[next].a;
         if (!other || dot(back, on) < std::cos(kWidestCorner) * norm(back) * norm(on)) continue;
-        const Mirror two = mirror_at(pieces[next], 0, *other, x);
+        const Mirror two = mirror_at(pieces[next], 0, *other, x, normal);
         mirrors.push_back({product(two.map, one.map), two.map * one.shift + two.shift, two.map * one.drift + two.drift,
-                           one.sign * two.sign, static_cast<std::uint32_t>(pieces.size() + k)});
+                           one.sign * two.sign, 1.0, static_cast<std::uint32_t>(pieces.size() + k)});
     }
 }
 

@@ -22,7 +22,7 @@ enum class RimKind : std::uint8_t {
     kLine,   ///< a straight wire from `a` to `b`
     kRing,   ///< a wire around the center `a` with the unit axis `b`
     kPlate,  ///< a plane through `a` with the unit normal `b`, toward the film; films slide on it
-    kBall,   ///< a ball around `a`; films slide on it
+    kBall,   ///< a ball around `a`, or a stick from `a` - `b` to `a` + `b`; films slide on it
 };
 
 /// Where the film beyond a rim is: place(x) = map x + shift, velocity(w) = map w + drift.
@@ -31,6 +31,7 @@ struct Mirror {
     Vec3 shift;         ///< [m]
     Vec3 drift;         ///< [m/s]
     double sign = 1.0;  ///< of velocities along the normals: -1 behind a wire, which the film turns about
+    double root = 1.0;  ///< of how much smaller the picture's area is than the film's, behind a ball or stick
     std::uint32_t key;  ///< which pieces it is the picture behind: the same for all particles
 
     Vec3 place(const Vec3& x) const { return map * x + shift; }
@@ -47,7 +48,8 @@ struct RimPiece {
     Vec3 velocity_a{}, velocity_b{};  ///< of the points a and b of a line [m/s]; of the center, and the spin [1/s]
     std::int32_t corner_next = -1;    ///< of a line: the piece that begins where it ends, if they meet at a right angle
 
-    /// The point of the piece nearest to x; nothing where that is beyond the ends of a line.
+    /// The point of the piece nearest to x; nothing where that is beyond the ends of a line, or in the middle of a
+    /// ball.
     std::optional<Vec3> foot(const Vec3& x) const;
     /// Of the point of the piece at `foot` [m/s].
     Vec3 velocity_at(const Vec3& foot) const;
@@ -78,9 +80,13 @@ private:
     std::vector<film::Wire> wires_;
 };
 
-/// Pictures of the film around `x` behind the pieces of its region that are within `reach`, and behind two that meet
-/// at a right angle near it.
-void append_mirrors(
-    std::span<const RimPiece> pieces, std::int32_t region, const Vec3& x, double reach, std::vector<Mirror>& mirrors);
+/// Pictures of the film around `x`, whose normal there is `normal`, behind the pieces of its region that are within
+/// `reach`, and behind two that meet at a right angle near it.
+void append_mirrors(std::span<const RimPiece> pieces,
+                    std::int32_t region,
+                    const Vec3& x,
+                    const Vec3& normal,
+                    double reach,
+                    std::vector<Mirror>& mirrors);
 
 }  // namespace lamella::melp

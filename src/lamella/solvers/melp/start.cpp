@@ -6,6 +6,7 @@
 #include "lamella/solvers/melp/bubble_shapes.h"
 #include "lamella/solvers/melp/open_films.h"
 #include "lamella/solvers/melp/refusals.h"
+#include "lamella/solvers/melp/solids.h"
 #include "lamella/solvers/melp/start_thickness.h"
 
 #include <algorithm>
@@ -110,6 +111,7 @@ void append(Start& start,
             .volume = region.volume,
             .closed = region.volume > 0.0,
             .held = region.held,
+            .cell = region.area / static_cast<double>(std::max(region.coarse.position.size(), std::size_t{1})),
             .film_radius = std::sqrt(region.area / std::numbers::pi)};
     if (gas.closed) {
         const double gauge = 2.0 / 3.0 * material.film_tension() * region.area / region.volume;
@@ -212,6 +214,7 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
                films.material, options, thickness);
     }
     start.joined = joined_regions(films.mesh, loose, start.gas);
+    const std::vector<film::Body> bodies = film::bodies_at_start(films.solids);
     for (const OpenFilm& film : open) {
         RegionStart region{
             .area = film.area, .volume = options.rim == RimHold::kWire ? 0.0 : film.volume, .held = true};
@@ -219,6 +222,11 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
         region.coarse = film.sample(particles_on(film.area, h));
         if (options.fine_ratio > 0)
             region.fine = film.sample(static_cast<std::size_t>(options.fine_ratio) * region.coarse.position.size());
+        const auto whole = static_cast<double>(region.coarse.position.size() + region.fine.position.size());
+        cut_out(bodies, region.coarse);
+        cut_out(bodies, region.fine);
+        if (region.coarse.position.empty()) throw InputError("melp: a [[solid]] covers all of a film");
+        region.area *= static_cast<double>(region.coarse.position.size() + region.fine.position.size()) / whole;
         total_area += region.area;
         const double target = region.volume;
         append(start, std::move(region), film.back, target, films.material, options, thickness);

@@ -130,7 +130,7 @@ void VortexParticleSolver::load(sim::StateReader& in) {
     time_ = in.read_double("time");
     steps_ = in.read_integer("steps");
     step_ = in.read_double("step");
-    move_bodies(input_.films->solids, time_, 0.0, bodies_);
+    film::move_bodies(input_.films->solids, time_, 0.0, bodies_);
     fastest_dilatation_ = in.read_double("fastest_dilatation");
     std::vector<double> solids;
     read_column(in, "solids", kBodyNumbers * bodies_.size(), solids);

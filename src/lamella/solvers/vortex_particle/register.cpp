@@ -8,7 +8,8 @@ void register_vortex_particle(sim::SolverRegistry& registry) {
     registry.add({.name = "vortex_particle",
                   .summary = "the flow inside films: swirls, drainage, fingers, by vortex particles on a mesh [Tao24]",
                   .films = true,
-                  .stirring = true,
+                  .vortices = true,
+                  .solids = true,
                   .create =
                       [si](const sim::SolverInput& input) {
                           return std::make_unique<VortexParticleSolver>(sim::read_options<Options>(input.options, si),

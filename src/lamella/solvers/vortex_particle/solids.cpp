@@ -17,37 +17,6 @@ Vec3 along(const Vec3& u, const Vec3& normal) { return u - dot(u, normal) * norm
 
 }  // namespace
 
-std::vector<Body> bodies_at_start(std::span<const film::Solid> solids) {
-    std::vector<Body> bodies;
-    for (const film::Solid& solid : solids)
-        bodies.push_back({.radius = solid.radius,
-                          .free = solid.free,
-                          .mass = solid.mass,
-                          .center = solid.center,
-                          .velocity = solid.velocity,
-                          .spin = solid.spin,
-                          .force = {},
-                          .torque = {}});
-    move_bodies(solids, 0.0, 0.0, bodies);
-    return bodies;
-}
-
-void move_bodies(std::span<const film::Solid> solids, double time, double ahead, std::span<Body> bodies) {
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-        Body& body = bodies[b];
-        if (body.free) {
-            body.center += ahead * body.velocity;
-            continue;
-        }
-        const film::Solid& solid = solids[b];
-        const bool moves = solid.moves(time);
-        body.in_film = solid.in_film(time);
-        body.center = solid.center_at(time);
-        body.velocity = moves ? solid.velocity : Vec3{};
-        body.spin = moves ? solid.spin : Vec3{};
-    }
-}
-
 Cover cover_of(const Surface& s, std::span<const Body> bodies, double spread) {
     // Of an edge: how far inside its surface a solid's hold begins, so that it acts as large as it is, by the added
     // mass of disks four and eight edges in radius.
@@ -66,13 +35,6 @@ Cover cover_of(const Surface& s, std::span<const Body> bodies, double spread) {
         }
     }
     return cover;
-}
-
-double fastest(std::span<const film::Solid> solids) {
-    double speed = 0.0;
-    for (const film::Solid& solid : solids)
-        if (!solid.free) speed = std::max(speed, norm(solid.velocity) + norm(solid.spin) * solid.radius);
-    return speed;
 }
 
 Grip::Grip(

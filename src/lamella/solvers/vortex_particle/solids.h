@@ -2,7 +2,7 @@
 
 // Solid balls in a film: where they are the film moves with them, and pushes back.
 
-#include "lamella/film/problem.h"
+#include "lamella/film/solid.h"
 #include "lamella/solvers/vortex_particle/surface.h"
 
 #include <cstdint>
@@ -11,24 +11,7 @@
 
 namespace lamella::vortex_particle {
 
-/// A solid at one moment.
-struct Body {
-    double radius = 0.0;  ///< [m]
-    bool in_film = true;
-    bool free = false;
-    double mass = 0.0;    ///< beyond that of the film that it covers [kg]
-    Vec3 center;          ///< [m]
-    Vec3 velocity, spin;  ///< [m/s], [rad/s]
-    /// What the film did to it in the last step, the film that it covers counted with the solid; the torque about its
-    /// center [N], [N m].
-    Vec3 force, torque;
-
-    Vec3 velocity_at(const Vec3& x) const { return velocity + cross(spin, x - center); }
-};
-
-std::vector<Body> bodies_at_start(std::span<const film::Solid> solids);
-/// Puts those that move as they are told where they are at `time`; the others `ahead` in time by their velocity [s].
-void move_bodies(std::span<const film::Solid> solids, double time, double ahead, std::span<Body> bodies);
+using film::Body;
 
 /// How firmly a solid holds each triangle, 0 to 1 over a layer of one edge inside its surface, and which solid: where
 /// several overlap the one that holds it more. The layer is steep outside, so that it matters little how many sweeps a
@@ -40,9 +23,6 @@ struct Cover {
 /// @param spread  how far viscosity carries vorticity in a step, sqrt(nu dt) [m]: between two holds the film inside the
 ///                solid starts to move, as if the solid were smaller by that much
 Cover cover_of(const Surface& s, std::span<const Body> bodies, double spread);
-
-/// The largest speed of any solid's surface that is told [m/s].
-double fastest(std::span<const film::Solid> solids);
 
 /// One step's hold of solids on the film. Momentum that they give to it they lose: free ones change their velocity in
 /// each sweep such that they have given what they lost,

@@ -50,7 +50,7 @@ VortexParticleSolver::VortexParticleSolver(const Options& options, const sim::So
       flow_solver_(surface_),
       diffusion_(surface_),
       compression_(surface_),
-      bodies_(bodies_at_start(input.films->solids)) {
+      bodies_(film::bodies_at_start(input.films->solids)) {
     film::start_surfactant(input_.films->material);
     if (options_.walls == Walls::kNoSlip && viscosity_ == 0.0)
         throw InputError("vortex_particle.walls = \"no_slip\" needs material.kinematic_viscosity or surface_viscosity");
@@ -72,6 +72,8 @@ void VortexParticleSolver::check_solids() const {
     constexpr double kPi = 3.14159265358979323846;
     const film::Material& material = input_.films->material;
     for (const Body& body : bodies_) {
+        if (norm(body.arm) > 0.0) throw InputError("vortex_particle: solid.arm is for solver melp; a stick here is a ball");
+        if (!body.wet) throw InputError("vortex_particle: solid.wet = false is for solver melp");
         if (!body.free) continue;
         const double around = 2.0 * kPi * body.radius * body.radius * material.liquid_density * material.thickness;
         if (body.mass < around)
@@ -147,7 +149,7 @@ double VortexParticleSolver::choose_step(double left) const {
     double crossings = 0.0;  // of edges per time
     for (std::size_t t = 0; t < velocity_.size(); ++t)
         crossings = std::max(crossings, norm(velocity_[t]) / surface_.edge_length(t));
-    const double told = std::max(vortex_particle::fastest(input_.films->solids), norm(stream_.velocity()));
+    const double told = std::max(film::fastest(input_.films->solids), norm(stream_.velocity()));
     crossings = std::max(crossings, told / surface_.mean_edge);
     constexpr double kMostCompression = 0.5;  // |theta| dt [method sheet 14]
     double dt = options_.largest_step;
@@ -330,8 +332,8 @@ void VortexParticleSolver::obey_solids(double dt, MeshFlow& flow) {
     if (bodies_.empty()) return;
     constexpr int kSweeps = 24;
     constexpr double kObeyed = 0.01;  // of what moves fastest
-    move_bodies(input_.films->solids, time_ + dt, dt, bodies_);
-    double speed = std::max(vortex_particle::fastest(input_.films->solids), norm(stream_.velocity()));
+    film::move_bodies(input_.films->solids, time_ + dt, dt, bodies_);
+    double speed = std::max(film::fastest(input_.films->solids), norm(stream_.velocity()));
     std::vector<double> mass(surface_.triangles());
     for (std::size_t t = 0; t < mass.size(); ++t) {
         const auto& [a, b, c] = surface_.corner[t];
