@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +24,29 @@ namespace lamella::io {
 ///                     format needs (radius, region_back, region_front; scalars: TimeValue, step, solver, ...), text
 ///                     that is not UTF-8 on one line, an integer field with other values than whole numbers up to 2^53
 void write_vtp(const std::filesystem::path& path, const sim::Frame& frame);
+
+/// The file of write_vtp for a frame of points that are never all in memory: their values come piece by piece.
+class VtpStream {
+public:
+    /// @param frame   the whole but for the values of its points and of their fields, which are not looked at; it has no
+    ///                surface
+    /// @param points  how many there are   @param radii  whether they have radii
+    /// @throws as write_vtp
+    VtpStream(const std::filesystem::path& path, const sim::Frame& frame, std::size_t points, bool radii);
+    ~VtpStream();
+    VtpStream(const VtpStream&) = delete;
+    VtpStream& operator=(const VtpStream&) = delete;
+
+    /// The next values: all radii, then all of each field, in order, then all coordinates; cut anywhere.
+    /// @throws as write_vtp
+    void append(std::span<const double> values);
+    /// All values are there: the file appears. @throws IoError
+    void commit();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
 
 /// Reads back what write_vtp wrote, to the last bit. @throws IoError, InputError (the file and what is wrong in it)
 sim::Frame read_vtp(const std::filesystem::path& path);

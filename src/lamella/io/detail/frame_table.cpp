@@ -123,9 +123,9 @@ std::span<const double> TableColumn::values(std::size_t first, std::size_t secon
     return scratch;
 }
 
-std::vector<TableColumn> vertex_table(const sim::Frame& frame) {
+std::vector<TableColumn> vertex_table(const sim::Frame& frame, bool radii) {
     std::vector<TableColumn> columns;
-    if (!frame.points.radius.empty()) {
+    if (radii) {
         columns.push_back({.name = "radius", .unit = frame.points.length_unit, .on_second = frame.points.radius});
     }
     const std::vector<sim::Field>& on_surface = frame.surface.vertex_fields;
