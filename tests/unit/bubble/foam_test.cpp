@@ -151,7 +151,9 @@ TEST(Foam, FollowsBubblesThatCrossTheBorderOfASmallBox) {
         o.integrator.skin = skin;
         auto solver = start_solver<2>(o);
         for (int k = 0; k < 150; ++k) solver->advance(1e9);
-        if (skin == 1.3) EXPECT_TRUE(solver->system().neighbors().has_images());
+        if (skin == 1.3) {
+            EXPECT_TRUE(solver->system().neighbors().has_images());
+        }
         const Memory now = saved(*solver);
         if (skin == 0.07)
             first = now;
