@@ -70,6 +70,9 @@ public:
 
     /// Everything that can be seen now. `mark` true: displacements 'since the last frame' count from here.
     virtual Frame frame() const = 0;
+    /// Enough for the measures, where no frame is written: as frame(), but points may come in any order, and fields that
+    /// no measure reads may be missing.
+    virtual Frame measured_frame() const { return frame(); }
     virtual void mark_frame() {}
     /// What only the solver knows, as in Frame::scalars; cheap enough for every row of the series.
     virtual std::vector<Scalar> scalars() const = 0;

@@ -150,7 +150,8 @@ std::optional<std::string> Loop::end_reason() const {
 
 void Loop::write_output(OutputTime due) {
     record_.times.measure(Stage::kOutput, [&] {
-        const sim::Frame frame = solver_->frame();
+        const bool shown = due.frame && scene_.output.frames;
+        const sim::Frame frame = shown ? solver_->frame() : solver_->measured_frame();
         if (!events_) {
             const std::string& length = frame.points.length_unit;
             events_.emplace(
@@ -160,7 +161,7 @@ void Loop::write_output(OutputTime due) {
         }
         collect_events();
         series_.append(frame, team_.measure(frame));
-        if (due.frame && scene_.output.frames) write_frame(frame);
+        if (shown) write_frame(frame);
     });
     state_.output_time = due.time;
     state_.output_step = solver_->step();

@@ -23,6 +23,7 @@ enum class Task : std::int64_t {
     kStart,
     kAdvance,
     kFrame,
+    kMeasuredFrame,
     kMeasure,
     kWriteFrame,
     kScalars,
@@ -192,6 +193,9 @@ public:
     sim::Frame frame() const override {
         return all({Task::kFrame}, [&] { return own_->frame(); });
     }
+    sim::Frame measured_frame() const override {
+        return all({Task::kMeasuredFrame}, [&] { return own_->measured_frame(); });
+    }
     void mark_frame() override {
         all({Task::kMarkFrame}, [&] { own_->mark_frame(); });
     }
@@ -242,6 +246,9 @@ void obey(Communicator& processes, const Order& order, Follower& follower) {
             break;
         case Task::kFrame:
             follower.share = solver.frame();
+            break;
+        case Task::kMeasuredFrame:
+            follower.share = solver.measured_frame();
             break;
         case Task::kMeasure:
             measure::measure_frame(follower.share, processes);

@@ -41,6 +41,9 @@ public:
         : options_(options.integrator), compat_(options.compat), next_step_(options.integrator.initial_step) {
         system.attached = system.attached_size_rates = {&previous_.size};
         for (auto& column : previous_.position) system.attached.push_back(&column);
+        system.scratch = {&predicted_.size, &corrected_.size, &predicted_size_rate_};
+        for (Increment<D>* increment : {&predicted_, &corrected_})
+            for (auto& column : increment->position) system.scratch.push_back(&column);
     }
 
     void begin(System<D>& system) override;
