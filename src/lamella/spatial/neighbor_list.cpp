@@ -328,6 +328,8 @@ NeighborSearch<D> find_neighbors(const PeriodicBox<D>& box,
         }
     });
 
+    balls = {};
+
     NeighborSearch<D> result;
     const auto [order, interior] = window_order(blocks, at_border);
     result.list.interior_groups = interior / kLanes;

@@ -40,8 +40,8 @@ struct Foam {
     Columns<D> marked;        ///< position at the last frame
     Columns<D> velocity;      ///< dx/dt at this state
     Column size_rate;         ///< dq/dt at this state
-    std::array<std::vector<std::int32_t>, D> wraps;  ///< how often the bubble left the box at its upper end
-    std::vector<std::int64_t> id;
+    std::array<AlignedVector<std::int32_t>, D> wraps;  ///< how often the bubble left the box at its upper end
+    AlignedVector<std::int64_t> id;
 
     /// The one list of columns that belong to a bubble: reordering, saving and loading use it.
     template <class Self, class Visitor>

@@ -77,6 +77,11 @@ sim::Frame BubbleSolver<D>::frame_of(Census<D> census, const Order& order, bool 
         frame.box->periodic[k] = foam.box.periodic[k];
     }
     frame.scalars = scalars_from(census);
+    census.force = {};
+    (options_.compat.energy ? census.energy : census.energy_thesis) = {};
+    if (!all_fields)
+        for (Column* column : {&census.energy, &census.energy_thesis, &census.pressure, &census.free_surface})
+            *column = {};
     frame.points.length_unit = "-";
 
     auto& fields = frame.points.fields;

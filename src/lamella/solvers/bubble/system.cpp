@@ -107,7 +107,7 @@ template <int D>
 spatial::NeighborSearch<D> System<D>::search_neighbors(const std::vector<std::uint32_t>& kept, dist::Halo& halo) {
     Columns<D> position;
     Column radius(kept.size());
-    std::vector<std::int64_t> id(kept.size());
+    AlignedVector<std::int64_t> id(kept.size());
     for (std::size_t k = 0; k < D; ++k) {
         position[k].resize(kept.size());
         parallel_for(kept.size(), [&](std::size_t i) { position[k][i] = foam.position[k][kept[i]]; });
@@ -120,6 +120,7 @@ spatial::NeighborSearch<D> System<D>::search_neighbors(const std::vector<std::ui
     halo = find_copies(kept, largest);
     const auto append = [&](auto& column) {
         const auto copies = halo.fetch(std::span(std::as_const(column)));
+        column.reserve(column.size() + copies.size());
         column.insert(column.end(), copies.begin(), copies.end());
     };
     for (auto& column : position) append(column);
