@@ -1,12 +1,12 @@
 #pragma once
 
+#include "lamella/core/host_device.h"
+#include "lamella/core/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-
-#include "lamella/core/host_device.h"
-#include "lamella/core/parallel.h"
 
 namespace lamella {
 

@@ -69,7 +69,8 @@ public:
     /// A column of `rows` rows whose values, as doubles, come from put().
     void column(const TableColumn& column, std::size_t rows, const std::string& attributes) {
         const ArrayTag tag{column.name, column.unit, column.components, attributes};
-        array<double>(tag, column.integer ? "Int64" : "Float64", rows * static_cast<std::size_t>(column.components), {});
+        array<double>(tag, column.integer ? "Int64" : "Float64", rows * static_cast<std::size_t>(column.components),
+                      {});
         arrays_.back().whole = column.integer;
     }
 
@@ -125,16 +126,17 @@ private:
 
     struct Array {
         std::size_t bytes;
-        Contents contents;        ///< none: comes from put()
-        bool whole = false;       ///< what comes are doubles, what is stored are integers
-        std::size_t offset = 0;   ///< in the data
+        Contents contents;       ///< none: comes from put()
+        bool whole = false;      ///< what comes are doubles, what is stored are integers
+        std::size_t offset = 0;  ///< in the data
     };
 
     template <class Value>
     void keep_array(const ArrayTag& tag, const char* type, std::span<const Value> values) {
-        array<Value>(tag, type, values.size(), [kept = std::vector<Value>(values.begin(), values.end())](const Put& put) {
-            put(bytes_of(std::span<const Value>(kept)));
-        });
+        array<Value>(tag, type, values.size(),
+                     [kept = std::vector<Value>(values.begin(), values.end())](const Put& put) {
+                         put(bytes_of(std::span<const Value>(kept)));
+                     });
     }
     void open_array(const char* element, const ArrayTag& tag, const char* type) {
         xml_.back() += fmt::format("<{} type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"{}", element, type,

@@ -182,9 +182,8 @@ std::vector<double> local_gas_fraction(const sim::Points& share,
     const std::size_t size = box.dimension == 2 ? per_axis * per_axis : per_axis * per_axis * per_axis;
 
     // No cell holds more than all balls do; the sum is of integers, so that neither threads nor processes show.
-    const double all = dist::exact_sum(processes, share.size(), kMostTerms, [&](std::size_t i) {
-        return ball_volume(share.radius[i], box.dimension);
-    });
+    const double all = dist::exact_sum(processes, share.size(), kMostTerms,
+                                       [&](std::size_t i) { return ball_volume(share.radius[i], box.dimension); });
     const Grid empty(size, FixedSum(all));
     const std::size_t few_blocks = std::max(kParallelBlock, share.size() / 64 + 1);
     Grid grid = parallel_reduce(

@@ -154,7 +154,8 @@ void measure_homogeneity(const Balls& balls, Report& report) {
 void check(const sim::Points& points) {
     if (points.radius.size() != points.size() && !points.radius.empty())
         throw InputError(fmt::format("{} radii for {} points", points.radius.size(), points.size()));
-    for (const auto& [name, components] : {std::pair("contacts", 1), {"velocity", 3}, {"path_length", 1}, {"displacement", 3}})
+    for (const auto& [name, components] :
+         {std::pair("contacts", 1), {"velocity", 3}, {"path_length", 1}, {"displacement", 3}})
         find_field(points, name, components);
 }
 

@@ -1,9 +1,10 @@
 // What must hold for a whole foam: conservation, the same bits whatever the threads, lists and interruptions, energy.
 
+#include "lamella/core/parallel.h"
+
 #include <gtest/gtest.h>
 
 #include "foams.h"
-#include "lamella/core/parallel.h"
 
 namespace lamella::bubble {
 namespace {
@@ -67,7 +68,8 @@ TEST(Foam, ContinuesFromASavedStateBitForBit) {
             second->load(middle);
             EXPECT_EQ(saved(*second), middle);
             run_to(*second, 0.8);
-            EXPECT_EQ(saved(*second), saved(*whole)) << "method " << static_cast<int>(method) << ", drag " << static_cast<int>(drag);
+            EXPECT_EQ(saved(*second), saved(*whole))
+                << "method " << static_cast<int>(method) << ", drag " << static_cast<int>(drag);
         }
     }
 }

@@ -150,9 +150,11 @@ TEST(Vtp, RefusesFramesThatContradictThemselves) {
     expect_refused([](auto& f) { f.surface.triangles[1][2] = 6; }, "vertex 6 of 6");
     expect_refused([](auto& f) { f.surface.regions.pop_back(); }, "4 triangles but 3 pairs of regions");
     expect_refused([](auto& f) { f.surface.face_fields[0].name = "region_back"; }, "\"region_back\" twice");
-    expect_refused([](auto& f) { f.surface.region_fields[0].values.pop_back(); }, "field \"closed\" has 6 values; 5 items");
+    expect_refused([](auto& f) { f.surface.region_fields[0].values.pop_back(); },
+                   "field \"closed\" has 6 values; 5 items");
     expect_refused([](auto& f) { f.surface.region_fields[1].name = "pressure"; }, "\"pressure\" twice");
-    expect_refused([](auto& f) { f.surface.regions[1][0] = 6; }, "region 6 beside it, but the fields of regions tell of 6");
+    expect_refused([](auto& f) { f.surface.regions[1][0] = 6; },
+                   "region 6 beside it, but the fields of regions tell of 6");
     expect_refused([](auto& f) { f.surface.regions[1][1] = -1; }, "region -1 beside it");
     expect_refused([](auto& f) { f.scalars[0].name = "region_pressure"; }, "\"region_pressure\" twice");
     expect_refused([](auto& f) { f.scalars[0].name = "solid_radius"; }, "\"solid_radius\" twice");

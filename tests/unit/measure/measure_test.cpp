@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "../dist/process_team.h"
-
 #include <cmath>
 #include <limits>
 #include <numbers>

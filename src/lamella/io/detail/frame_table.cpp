@@ -78,7 +78,8 @@ void check_surface(const sim::Surface& surface) {
 void check_solids(const std::vector<sim::Solid>& solids) {
     for (std::size_t i = 0; i < solids.size(); ++i) {
         const sim::Solid& solid = solids[i];
-        if (!(std::isfinite(solid.center[0]) && std::isfinite(solid.center[1]) && std::isfinite(solid.center[2])) || !(solid.radius > 0.0) || !std::isfinite(solid.radius))
+        if (!(std::isfinite(solid.center[0]) && std::isfinite(solid.center[1]) && std::isfinite(solid.center[2])) ||
+            !(solid.radius > 0.0) || !std::isfinite(solid.radius))
             throw InputError(fmt::format("solid {} has no place or no size", i));
     }
 }

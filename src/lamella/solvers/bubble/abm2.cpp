@@ -1,15 +1,15 @@
 // Adams-Bashforth-Moulton predictor-corrector of order 2 [Lankinen20, 3.3.1], with the weights of a variable step and
 // the clock of the step that was taken. The published factors and its clock are there for comparison.
 
-#include <algorithm>
-#include <cmath>
-
-#include <fmt/format.h>
-
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/solvers/bubble/integrator.h"
 #include "lamella/solvers/bubble/move.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace lamella::bubble {
 namespace {
@@ -185,8 +185,7 @@ Step Abm2<D>::step(System<D>& system, double longest) {
             break;
         }
         ++done.rejections;
-        if (next_step_ < 1e-12)
-            throw NumericalError(step_underflow(done.error, tolerance));
+        if (next_step_ < 1e-12) throw NumericalError(step_underflow(done.error, tolerance));
     }
 
     stage_moved(system, corrected_);

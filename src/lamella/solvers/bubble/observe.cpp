@@ -202,7 +202,6 @@ std::vector<sim::Scalar> BubbleSolver<D>::characteristic_numbers() const {
                     "as many as work at 80 % of one process's speed each, by a model (docs/clusters.md)"});
     list.push_back(
         {"memory_per_process", "MB", plan.memory * 1e-6, "of each of that many, copies of others' bubbles included"});
-    list.push_back({"memory_process_0", "MB", plan.memory_first * 1e-6, "of the one that gathers and writes frames"});
     list.push_back(
         {"halo_share", "-", plan.halo_share, "copies of others' bubbles per bubble of a process, at the start"});
     return list;

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <vector>
-
 #include "lamella/dist/partition.h"
 #include "lamella/solvers/bubble/domain.h"
 #include "lamella/solvers/bubble/foam.h"
@@ -12,6 +8,10 @@
 #include "lamella/solvers/bubble/model.h"
 #include "lamella/solvers/bubble/options.h"
 #include "lamella/solvers/bubble/rates.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 namespace lamella::bubble {
 
@@ -49,8 +49,8 @@ public:
     /// Hands every bubble to the process that owns its place, and drops vanished ones; with one process, nothing.
     void distribute();
 
-    /// Drops vanished bubbles, distributes and builds new neighbor lists for the current state. The lists stay valid while no
-    /// bubble's |dx| + dR passes reach(), at least `least_reach`.
+    /// Drops vanished bubbles, distributes and builds new neighbor lists for the current state. The lists stay valid
+    /// while no bubble's |dx| + dR passes reach(), at least `least_reach`.
     void rebuild(double least_reach = 0.0);
     double reach() const { return 0.5 * skin_; }
     std::int64_t rebuilds() const { return rebuilds_; }
