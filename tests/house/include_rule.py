@@ -28,7 +28,7 @@ FOLDERS = {
     "film": ["core", "geometry", "linalg", "spatial", "mesh"],
     "sim": ["core", "dist", "mesh", "film"],
     "io": ["core", "geometry", "sim", "mesh", "particles"],
-    "measure": ["core", "geometry", "optics", "spatial", "mesh", "sim", "io"],
+    "measure": ["core", "geometry", "optics", "spatial", "dist", "mesh", "sim", "io"],
     "render": ["core", "geometry", "optics", "spatial", "mesh", "sim", "io"],
 }
 FOLDERS |= {f"solvers/{name}": BELOW_SOLVERS for name in SOLVERS}

@@ -1,12 +1,12 @@
 #pragma once
 
+#include "lamella/core/host_device.h"
+#include "lamella/core/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-
-#include "lamella/core/host_device.h"
-#include "lamella/core/parallel.h"
 
 namespace lamella {
 
@@ -22,7 +22,8 @@ public:
     LAMELLA_HOST_DEVICE FixedSum() : FixedSum(0.0) {}
     /// @param bound  an upper bound of the sum of |terms|; twice as much is still safe
     LAMELLA_HOST_DEVICE explicit FixedSum(double bound) {
-        const int exponent = bound > 0.0 && std::isfinite(bound) ? std::ilogb(bound) : 0;
+        // Below 2^-900 a scale would be infinite: such terms are dropped.
+        const int exponent = bound > 0.0 && std::isfinite(bound) ? std::max(std::ilogb(bound), -900) : 0;
         high_scale_ = std::ldexp(1.0, 59 - exponent);
         high_unit_ = std::ldexp(1.0, exponent - 59);
     }

@@ -23,7 +23,10 @@ void Halo::begin(std::span<Column* const> columns) {
         }
     if (copies() > 0)
         for (Column* column : columns_)
-            if (column->size() < first_copy_ + copies()) column->resize(first_copy_ + copies());
+            if (column->size() < first_copy_ + copies()) {
+                column->reserve(first_copy_ + copies());  // no more than that: columns are long
+                column->resize(first_copy_ + copies());
+            }
     routes_.begin(std::as_bytes(std::span(sent_)), std::as_writable_bytes(std::span(received_)),
                   columns.size() * sizeof(double));
 }

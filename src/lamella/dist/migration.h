@@ -24,6 +24,7 @@ public:
     void operator()(C& column) const {
         using T = typename C::value_type;
         const std::vector<T> arrivals = routes_.arrivals(std::span<const T>(column));
+        column.reserve(std::max(count_, column.size()));  // no more than that: columns are long
         if (count_ > column.size()) column.resize(count_);
         for (const auto& [from, to] : moves_) column[to] = column[from];
         for (std::size_t n = 0; n < arrivals.size(); ++n) column[places_[n]] = arrivals[n];

@@ -224,8 +224,7 @@ void CheckpointWriter::commit() {
     impl_->check(impl_->file.reset());
     const detail::FileDescriptor& disk = impl_->file_on_disk.descriptor();
     const std::string seal = detail::checkpoint_seal(disk, impl_->output.size(), impl_->path);
-    if (const int error = detail::write_at(disk, 0, seal); error != 0)
-        detail::throw_io_error("write", impl_->path, error);
+    impl_->file_on_disk.write_at(0, seal);
     impl_->file_on_disk.commit(detail::OldFile::kKeepAsPrevious);
 }
 

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +25,30 @@ namespace lamella::io {
 ///                     that is not UTF-8 on one line, an integer field with other values than whole numbers up to 2^53
 void write_vtp(const std::filesystem::path& path, const sim::Frame& frame);
 
+/// The file of write_vtp for a frame of points that are never all in memory: their values come piece by piece.
+class VtpStream {
+public:
+    /// @param frame   the whole but for the values of its points and of their fields, which are not looked at; it has
+    /// no
+    ///                surface
+    /// @param points  how many there are   @param radii  whether they have radii
+    /// @throws as write_vtp
+    VtpStream(const std::filesystem::path& path, const sim::Frame& frame, std::size_t points, bool radii);
+    ~VtpStream();
+    VtpStream(const VtpStream&) = delete;
+    VtpStream& operator=(const VtpStream&) = delete;
+
+    /// The next values: all radii, then all of each field, in order, then all coordinates; cut anywhere.
+    /// @throws as write_vtp
+    void append(std::span<const double> values);
+    /// All values are there: the file appears. @throws IoError
+    void commit();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
 /// Reads back what write_vtp wrote, to the last bit. @throws IoError, InputError (the file and what is wrong in it)
 sim::Frame read_vtp(const std::filesystem::path& path);
 /// The same from memory (tests, fuzzing); `name` stands for the file in messages.
@@ -36,8 +62,8 @@ sim::Frame parse_vtp(std::string_view contents, const std::string& name);
 /// line. A flat box gets a slab as thick as the largest disc, as the format cannot hold a side of length 0.
 void write_extended_xyz(std::ostream& out, const sim::Frame& frame);
 
-/// Binary PLY: positions, radius and fields as vertex properties, triangles as faces with their region labels. The vertex
-/// fields `normal` and `color` get the names that other programs know: nx, ny, nz; red, green, blue (uchar).
+/// Binary PLY: positions, radius and fields as vertex properties, triangles as faces with their region labels. The
+/// vertex fields `normal` and `color` get the names that other programs know: nx, ny, nz; red, green, blue (uchar).
 /// Surface and points share one list as in write_vtp. Integer fields beyond 32 bit become doubles (PLY has no more).
 void write_ply(std::ostream& out, const sim::Frame& frame);
 
@@ -54,8 +80,9 @@ void write_points_csv(std::ostream& out, const sim::Frame& frame);
 
 // What follows is for programs that draw; give it frames with normals, thickness and color (render/baked_frame.h).
 
-/// Binary glTF 2.0: a mesh with a material of its own for every film (KHR_materials_iridescence for its mean thickness),
-/// balls as polyhedra; vertex fields as attributes, `thickness_nm` as _THICKNESS_NM; region labels as extras of the meshes.
+/// Binary glTF 2.0: a mesh with a material of its own for every film (KHR_materials_iridescence for its mean
+/// thickness), balls as polyhedra; vertex fields as attributes, `thickness_nm` as _THICKNESS_NM; region labels as
+/// extras of the meshes.
 void write_glb(std::ostream& out, const sim::Frame& frame);
 
 /// USD as text: films as one mesh with vertex fields and region labels as primvars, balls as points with widths.

@@ -1,7 +1,10 @@
 #include "lamella/measure/local_gas_fraction.h"
 
 #include "lamella/core/error.h"
+#include "lamella/core/fixed_sum.h"
 #include "lamella/core/parallel.h"
+#include "lamella/dist/agree.h"
+#include "lamella/dist/sum.h"
 
 #include <fmt/format.h>
 
@@ -99,16 +102,18 @@ struct Axis {
     std::size_t wrapped(int k) const { return static_cast<std::size_t>(((k % cells) + cells) % cells); }
 };
 
-void add_disc(const std::array<Axis, 3>& axes, const Vec3& center, double r, std::vector<double>& volume) {
+using Grid = std::vector<FixedSum>;  ///< volume in each cell
+
+void add_disc(const std::array<Axis, 3>& axes, const Vec3& center, double r, Grid& volume) {
     const auto [x0, x1] = axes[0].range(center[0] - r, center[0] + r);
     const auto [y0, y1] = axes[1].range(center[1] - r, center[1] + r);
     for (int y = y0; y <= y1; ++y)
         for (int x = x0; x <= x1; ++x)
-            volume[axes[1].wrapped(y) * static_cast<std::size_t>(axes[0].cells) + axes[0].wrapped(x)] +=
-                disc_in_rectangle(axes[0].interval(x, center[0]), axes[1].interval(y, center[1]), r);
+            volume[axes[1].wrapped(y) * static_cast<std::size_t>(axes[0].cells) + axes[0].wrapped(x)].add(
+                disc_in_rectangle(axes[0].interval(x, center[0]), axes[1].interval(y, center[1]), r));
 }
 
-void add_ball(const std::array<Axis, 3>& axes, const Vec3& center, double r, std::vector<double>& volume) {
+void add_ball(const std::array<Axis, 3>& axes, const Vec3& center, double r, Grid& volume) {
     struct Share {
         std::size_t cell;
         double volume;
@@ -129,7 +134,7 @@ void add_ball(const std::array<Axis, 3>& axes, const Vec3& center, double r, std
                 total += part;
             }
     const double scale = ball_volume(r, 3) / total;
-    for (const Share& share : shares) volume[share.cell] += scale * share.volume;
+    for (const Share& share : shares) volume[share.cell].add(scale * share.volume);
 }
 
 void check(const sim::Points& balls, const sim::Box& box, int cells) {
@@ -138,7 +143,7 @@ void check(const sim::Points& balls, const sim::Box& box, int cells) {
     const auto axes = static_cast<std::size_t>(box.dimension);
     double shortest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < axes; ++k) shortest = std::min(shortest, box.lengths[k]);
-    if (!(shortest > 0.0) || !std::isfinite(box_volume(box))) throw InputError("the box has no volume");
+    if (!(shortest > 0.0) || !std::isfinite(1e20 * box_volume(box))) throw InputError("the box has no volume");
     // A ball may reach half a box beyond every side: more would make the cells it touches a matter of memory.
     for (std::size_t i = 0; i < balls.size(); ++i) {
         bool good = balls.radius[i] > 0.0 && balls.radius[i] <= shortest;
@@ -162,32 +167,47 @@ double box_volume(const sim::Box& box) {
 }
 
 std::vector<double> local_gas_fraction(const sim::Points& balls, const sim::Box& box, int cells) {
-    check(balls, box, cells);
+    dist::Alone alone;
+    return local_gas_fraction(balls, box, cells, alone);
+}
+
+std::vector<double> local_gas_fraction(const sim::Points& share,
+                                       const sim::Box& box,
+                                       int cells,
+                                       dist::Communicator& processes) {
+    dist::together(processes, [&] { check(share, box, cells); });
     std::array<Axis, 3> axes{};
     for (std::size_t k = 0; k < 3; ++k) axes[k] = {box.origin[k], box.lengths[k], box.periodic[k], cells};
     const auto per_axis = static_cast<std::size_t>(cells);
     const std::size_t size = box.dimension == 2 ? per_axis * per_axis : per_axis * per_axis * per_axis;
 
-    using Grid = std::vector<double>;
+    // No cell holds more than all balls do; the sum is of integers, so that neither threads nor processes show.
+    const double all = dist::exact_sum(processes, share.size(), kMostTerms,
+                                       [&](std::size_t i) { return ball_volume(share.radius[i], box.dimension); });
+    const Grid empty(size, FixedSum(all));
+    const std::size_t few_blocks = std::max(kParallelBlock, share.size() / 64 + 1);
     Grid grid = parallel_reduce(
-        balls.size(), Grid(size, 0.0),
+        share.size(), empty,
         [&](std::size_t begin, std::size_t end) {
-            Grid part(size, 0.0);
+            Grid part = empty;
             for (std::size_t i = begin; i < end; ++i) {
                 if (box.dimension == 2)
-                    add_disc(axes, balls.position[i], balls.radius[i], part);
+                    add_disc(axes, share.position[i], share.radius[i], part);
                 else
-                    add_ball(axes, balls.position[i], balls.radius[i], part);
+                    add_ball(axes, share.position[i], share.radius[i], part);
             }
             return part;
         },
         [](Grid sum, const Grid& part) {
             for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += part[k];
             return sum;
-        });
+        },
+        few_blocks);
+    dist::sum(processes, grid);
     const double cell_volume = box_volume(box) / static_cast<double>(size);
-    for (double& value : grid) value /= cell_volume;
-    return grid;
+    std::vector<double> fraction(size);
+    for (std::size_t k = 0; k < size; ++k) fraction[k] = grid[k].value() / cell_volume;
+    return fraction;
 }
 
 }  // namespace lamella::measure

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lamella/dist/communicator.h"
 #include "lamella/sim/frame.h"
 
 #include <vector>
@@ -26,5 +27,11 @@ double box_volume(const sim::Box& box);
 /// @returns      cells^dimension values [-], x fastest
 /// @throws InputError  the balls lack radii, a value is not finite, the box has no volume, or a ball is larger than it
 std::vector<double> local_gas_fraction(const sim::Points& balls, const sim::Box& box, int cells);
+
+/// The same for balls of which each process has a share; all get all cells. Collective.
+std::vector<double> local_gas_fraction(const sim::Points& share,
+                                       const sim::Box& box,
+                                       int cells,
+                                       dist::Communicator& processes);
 
 }  // namespace lamella::measure

@@ -15,11 +15,11 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Everything one row may hold, under its name; a measure that the solver itself reports is not repeated.
-std::vector<sim::Scalar> row_values(const sim::Frame& frame) {
+std::vector<sim::Scalar> row_values(const sim::Frame& frame, const std::vector<sim::Scalar>& measured) {
     std::vector<sim::Scalar> values{{"time", frame.time_unit, frame.time}};
     values.insert(values.end(), frame.scalars.begin(), frame.scalars.end());
-    for (sim::Scalar& measured : measure::measure_frame(frame))
-        if (!measure::find_value(values, measured.name)) values.push_back(std::move(measured));
+    for (const sim::Scalar& value : measured)
+        if (!measure::find_value(values, value.name)) values.push_back(value);
     return values;
 }
 
@@ -71,8 +71,8 @@ Series::Series(std::filesystem::path path, std::uint64_t offset) : path_(std::mo
     mean_radii_ = column_values(table, "mean_radius");
 }
 
-void Series::append(const sim::Frame& frame) {
-    std::vector<sim::Scalar> values = row_values(frame);
+void Series::append(const sim::Frame& frame, const std::vector<sim::Scalar>& measured) {
+    std::vector<sim::Scalar> values = row_values(frame, measured);
     if (const auto mean_radius = measure::find_value(values, "mean_radius")) {
         times_.push_back(frame.time);
         mean_radii_.push_back(*mean_radius);

@@ -29,8 +29,8 @@ public:
     /// @throws InputError  the file is shorter, or no series   @throws IoError
     Series(std::filesystem::path path, std::uint64_t offset);
 
-    /// Adds a row: the frame's own scalars, then what can be measured on it. @throws IoError
-    void append(const sim::Frame& frame);
+    /// Adds a row: the frame's own scalars, then what was measured on it. @throws IoError
+    void append(const sim::Frame& frame, const std::vector<sim::Scalar>& measured);
     /// Waits until all rows are on the disk; bytes written so far (0 before the first row).
     std::uint64_t sync();
 

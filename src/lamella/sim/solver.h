@@ -1,16 +1,16 @@
 #pragma once
 
+#include "lamella/core/log.h"
+#include "lamella/core/vec.h"
+#include "lamella/sim/archive.h"
+#include "lamella/sim/frame.h"
+
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "lamella/core/log.h"
-#include "lamella/core/vec.h"
-#include "lamella/sim/archive.h"
-#include "lamella/sim/frame.h"
 
 namespace lamella::sim {
 
@@ -25,9 +25,9 @@ struct StepReport {
 /// Something that happened at one moment: a bubble vanished, two merged, a film burst.
 struct Event {
     double time = 0.0;
-    std::string kind;   ///< t1, merge, pinch, split, pop, burst, remove, rebuild ...
-    Vec3 position;      ///< where
-    std::string detail; ///< free text, e.g. "bubble 4711"
+    std::string kind;    ///< t1, merge, pinch, split, pop, burst, remove, rebuild ...
+    Vec3 position;       ///< where
+    std::string detail;  ///< free text, e.g. "bubble 4711"
 };
 
 /// What a solver may use while it starts: report progress, notice that the user wants to stop, write a message.
@@ -44,8 +44,8 @@ struct StartContext {
 ///
 /// Where several processes compute together (SolverInput::processes), each has a Solver for its share of the items.
 /// Then start, advance, frame, scalars, save and load are collective: all processes call them in the same order with
-/// the same arguments. frame() shows the process's share, in an order of which each process has one stretch; scalars are
-/// those of the whole; events are complete on process 0; everything else is the same everywhere.
+/// the same arguments. frame() shows the process's share, in an order of which each process has one stretch; scalars
+/// are those of the whole; events are complete on process 0; everything else is the same everywhere.
 class Solver {
 public:
     virtual ~Solver() = default;
@@ -70,6 +70,9 @@ public:
 
     /// Everything that can be seen now. `mark` true: displacements 'since the last frame' count from here.
     virtual Frame frame() const = 0;
+    /// Enough for the measures, where no frame is written: as frame(), but points may come in any order, and fields
+    /// that no measure reads may be missing.
+    virtual Frame measured_frame() const { return frame(); }
     virtual void mark_frame() {}
     /// What only the solver knows, as in Frame::scalars; cheap enough for every row of the series.
     virtual std::vector<Scalar> scalars() const = 0;

@@ -299,6 +299,7 @@ NeighborSearch<D> find_neighbors(const PeriodicBox<D>& box,
         for (std::size_t k = 0; k < D; ++k) balls.position[k][i] = position[k][cell_order[i]];
         balls.radius[i] = radius[cell_order[i]];
     });
+    frame.position = {};
 
     std::vector<std::uint32_t> subjects;
     subjects.reserve(owned);
@@ -326,6 +327,8 @@ NeighborSearch<D> find_neighbors(const PeriodicBox<D>& box,
             lists.length[s - begin] = static_cast<std::uint32_t>(entries.size());
         }
     });
+
+    balls = {};
 
     NeighborSearch<D> result;
     const auto [order, interior] = window_order(blocks, at_border);

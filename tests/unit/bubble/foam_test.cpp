@@ -1,9 +1,10 @@
 // What must hold for a whole foam: conservation, the same bits whatever the threads, lists and interruptions, energy.
 
+#include "lamella/core/parallel.h"
+
 #include <gtest/gtest.h>
 
 #include "foams.h"
-#include "lamella/core/parallel.h"
 
 namespace lamella::bubble {
 namespace {
@@ -67,7 +68,8 @@ TEST(Foam, ContinuesFromASavedStateBitForBit) {
             second->load(middle);
             EXPECT_EQ(saved(*second), middle);
             run_to(*second, 0.8);
-            EXPECT_EQ(saved(*second), saved(*whole)) << "method " << static_cast<int>(method) << ", drag " << static_cast<int>(drag);
+            EXPECT_EQ(saved(*second), saved(*whole))
+                << "method " << static_cast<int>(method) << ", drag " << static_cast<int>(drag);
         }
     }
 }
@@ -151,7 +153,9 @@ TEST(Foam, FollowsBubblesThatCrossTheBorderOfASmallBox) {
         o.integrator.skin = skin;
         auto solver = start_solver<2>(o);
         for (int k = 0; k < 150; ++k) solver->advance(1e9);
-        if (skin == 1.3) EXPECT_TRUE(solver->system().neighbors().has_images());
+        if (skin == 1.3) {
+            EXPECT_TRUE(solver->system().neighbors().has_images());
+        }
         const Memory now = saved(*solver);
         if (skin == 0.07)
             first = now;

@@ -2,6 +2,7 @@
 
 #include "lamella/core/parallel.h"
 #include "lamella/dist/gather.h"
+#include "lamella/measure/measure.h"
 
 #include <gtest/gtest.h>
 
@@ -78,7 +79,8 @@ struct Outcome {
     Memory state;
     std::vector<sim::Event> events;
     std::map<std::string, double> scalars;
-    std::vector<double> frame;  ///< positions, radii and all fields
+    std::vector<double> frame;  ///< radii and all fields
+    std::map<std::string, double> measures;
 };
 
 template <int D>
@@ -94,8 +96,10 @@ void look(const BubbleSolver<D>& solver, dist::Communicator& processes, Outcome&
     };
     append(frame.points.radius);
     for (const sim::Field& field : frame.points.fields) append(field.values);
+    const std::vector<sim::Scalar> measures = measure::measure_frame(frame, processes);
     if (processes.rank() != 0) return;
     outcome.frame = values;
+    for (const sim::Scalar& s : measures) outcome.measures[s.name] = s.value;
     for (const sim::Scalar& s : scalars) outcome.scalars[s.name] = s.value;
 }
 
@@ -129,6 +133,7 @@ void expect_same_on(const std::vector<int>& numbers,
         EXPECT_EQ(shared.state, alone.state) << processes << " processes";
         EXPECT_EQ(shared.scalars, alone.scalars);
         EXPECT_EQ(shared.frame, alone.frame);
+        EXPECT_EQ(shared.measures, alone.measures);
         ASSERT_EQ(shared.events.size(), alone.events.size());
         for (std::size_t k = 0; k < alone.events.size(); ++k) {
             EXPECT_EQ(shared.events[k].detail, alone.events[k].detail);

@@ -81,6 +81,39 @@ TEST(Vtp, WritesTheSameBytesOnAnyNumberOfThreads) {
     EXPECT_TRUE(one == vtp_text(frame));
 }
 
+TEST(Vtp, WritesTheSameBytesPieceByPiece) {
+    const sim::Frame frame = points_frame(70001);  // several compressed blocks, and a partial one
+    sim::Frame bare = frame;
+    bare.points.position.clear();
+    bare.points.radius.clear();
+    for (sim::Field& field : bare.points.fields) field.values.clear();
+    const std::string whole = vtp_text(frame);
+    for (const std::size_t most : {std::size_t{1009}, std::size_t{32768}, std::size_t{600000}}) {
+        const TemporaryFolder folder;
+        io::VtpStream stream(folder / "a.vtp", bare, frame.points.size(), true);
+        std::vector<double> values = frame.points.radius;  // pieces go across columns
+        for (const sim::Field& field : frame.points.fields)
+            values.insert(values.end(), field.values.begin(), field.values.end());
+        for (const Vec3& x : frame.points.position) values.insert(values.end(), x.v, x.v + 3);
+        for (std::span<const double> rest(values); !rest.empty();) {
+            const std::size_t now = std::min(most, rest.size());
+            stream.append(rest.first(now));
+            rest = rest.subspan(now);
+        }
+        EXPECT_EQ(names_in(folder.path()), std::set<std::string>{"a.vtp.tmp"});
+        stream.commit();
+        EXPECT_TRUE(contents_of(folder / "a.vtp") == whole) << most;
+    }
+}
+
+TEST(Vtp, StreamsAFrameWithoutPoints) {
+    sim::Frame frame = points_frame(0);
+    const TemporaryFolder folder;
+    io::VtpStream stream(folder / "a.vtp", frame, 0, false);
+    stream.commit();
+    expect_same(read_vtp(folder / "a.vtp"), frame);
+}
+
 TEST(Vtp, LeavesNothingButTheFileBehind) {
     const TemporaryFolder folder;
     write_vtp(folder / "a.vtp", points_frame(3));
@@ -117,9 +150,11 @@ TEST(Vtp, RefusesFramesThatContradictThemselves) {
     expect_refused([](auto& f) { f.surface.triangles[1][2] = 6; }, "vertex 6 of 6");
     expect_refused([](auto& f) { f.surface.regions.pop_back(); }, "4 triangles but 3 pairs of regions");
     expect_refused([](auto& f) { f.surface.face_fields[0].name = "region_back"; }, "\"region_back\" twice");
-    expect_refused([](auto& f) { f.surface.region_fields[0].values.pop_back(); }, "field \"closed\" has 6 values; 5 items");
+    expect_refused([](auto& f) { f.surface.region_fields[0].values.pop_back(); },
+                   "field \"closed\" has 6 values; 5 items");
     expect_refused([](auto& f) { f.surface.region_fields[1].name = "pressure"; }, "\"pressure\" twice");
-    expect_refused([](auto& f) { f.surface.regions[1][0] = 6; }, "region 6 beside it, but the fields of regions tell of 6");
+    expect_refused([](auto& f) { f.surface.regions[1][0] = 6; },
+                   "region 6 beside it, but the fields of regions tell of 6");
     expect_refused([](auto& f) { f.surface.regions[1][1] = -1; }, "region -1 beside it");
     expect_refused([](auto& f) { f.scalars[0].name = "region_pressure"; }, "\"region_pressure\" twice");
     expect_refused([](auto& f) { f.scalars[0].name = "solid_radius"; }, "\"solid_radius\" twice");

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "../dist/process_team.h"
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -68,6 +70,20 @@ TEST(MeasureFrame, LeavesOutWhatItCannotMeasure) {
     frame.points.radius.clear();
     EXPECT_TRUE(measure_frame(frame).empty());
     EXPECT_TRUE(measure_frame({}).empty());
+}
+
+TEST(MeasureFrame, HasNoNumberForWhatIsNone) {
+    sim::Frame frame = three_discs();
+    frame.points.fields[1].values[4] = std::nan("");
+    frame.points.fields[2].values[0] = std::numeric_limits<double>::infinity();
+    frame.points.fields[3].values[0] = 1e200;   // its square is infinite
+    frame.points.fields[3].values[4] = 1e-160;  // and this one's has few bits
+    EXPECT_TRUE(std::isnan(value(frame, "velocity_variance")));
+    EXPECT_TRUE(std::isnan(value(frame, "mean_path")));
+    EXPECT_TRUE(std::isnan(value(frame, "mean_square_displacement")));
+    EXPECT_NEAR(value(frame, "mean_radius"), 0.6, 1e-15);
+    frame.points.fields[3].values.assign(9, 1e-160);
+    EXPECT_NEAR(value(frame, "mean_square_displacement"), 0.0, 1e-270);
 }
 
 TEST(MeasureFrame, RefusesFieldsThatDoNotFit) {
@@ -137,6 +153,39 @@ double counted_fraction(const sim::Points& ball, const sim::Box& box, int cells,
                 if (squared < ball.radius[0] * ball.radius[0]) ++inside;
             }
     return static_cast<double>(inside) / (kPoints * kPoints * depth);
+}
+
+/// A frame's balls from `first` on, up to `end`.
+sim::Frame stretch(const sim::Frame& frame, std::size_t first, std::size_t end) {
+    sim::Frame part = frame;
+    const auto cut = [&](auto& values, std::size_t components) {
+        values.erase(values.begin() + static_cast<std::ptrdiff_t>(end * components), values.end());
+        values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first * components));
+    };
+    cut(part.points.position, 1);
+    cut(part.points.radius, 1);
+    for (sim::Field& field : part.points.fields) cut(field.values, static_cast<std::size_t>(field.components));
+    return part;
+}
+
+TEST(MeasureFrame, GivesTheSameBitsForSharesOfProcesses) {
+    for (const int dimension : {2, 3}) {
+        constexpr std::size_t kCount = 9000;
+        sim::Frame frame = random_balls(dimension, {true, false, true}, kCount);
+        std::vector<double> speed(3 * kCount);
+        for (std::size_t n = 0; n < speed.size(); ++n) speed[n] = std::sin(0.7 * static_cast<double>(n * n));
+        frame.points.fields = {{"velocity", "-", 3, false, speed}};
+        const auto whole = measure_frame(frame);
+        EXPECT_GE(whole.size(), 7U);
+        test::as_processes(3, [&](const auto& processes) {  // the second has none
+            const std::array<std::size_t, 4> cut{0, 5000, 5000, kCount};
+            const auto rank = static_cast<std::size_t>(processes->rank());
+            const auto shared = measure_frame(stretch(frame, cut[rank], cut[rank + 1]), *processes);
+            ASSERT_EQ(shared.size(), whole.size());
+            for (std::size_t k = 0; k < whole.size(); ++k)
+                EXPECT_EQ(shared[k].value, whole[k].value) << whole[k].name << ", process " << rank;
+        });
+    }
 }
 
 TEST(LocalGasFractionOfOneBall, IsThatOfCountedPoints) {

@@ -1,6 +1,7 @@
 #include "lamella/run/series.h"
 
 #include "lamella/core/error.h"
+#include "lamella/measure/measure.h"
 
 #include <gtest/gtest.h>
 
@@ -53,11 +54,13 @@ sim::Frame frame_at(double time) {
     return frame;
 }
 
+void append(Series& series, const sim::Frame& frame) { series.append(frame, measure::measure_frame(frame)); }
+
 TEST(Series, WritesTimeScalarsMeasuresAndExponent) {
     const TemporaryFolder folder;
     Series series(folder.path() / "series.csv");
-    series.append(frame_at(0.0));
-    series.append(frame_at(0.5));
+    append(series, frame_at(0.0));
+    append(series, frame_at(0.5));
     const io::CsvTable table = io::read_csv(folder.path() / "series.csv");
     const std::vector<std::string> header{
         "time[-]",       "energy[J]",  "bubbles[-]", "mean_radius[-]", "mean_square_radius[-]",
@@ -74,10 +77,10 @@ TEST(Series, WritesTimeScalarsMeasuresAndExponent) {
 TEST(Series, WritesNanForWhatARowLacks) {
     const TemporaryFolder folder;
     Series series(folder.path() / "series.csv");
-    series.append(frame_at(0.0));
+    append(series, frame_at(0.0));
     sim::Frame without = frame_at(1.0);
     without.scalars.clear();
-    series.append(without);
+    append(series, without);
     const io::CsvTable table = io::read_csv(folder.path() / "series.csv");
     EXPECT_TRUE(std::isnan(table.rows[1][1]));
     EXPECT_EQ(table.rows[1][2], 2.0);  // now the measure
@@ -88,7 +91,7 @@ TEST(Series, ContinuesAsIfItHadNeverStopped) {
     const auto whole = folder.path() / "whole.csv";
     const auto cut = folder.path() / "cut.csv";
     const auto write = [](Series& series, int from, int to) {
-        for (int i = from; i < to; ++i) series.append(frame_at(0.3 * i));
+        for (int i = from; i < to; ++i) append(series, frame_at(0.3 * i));
     };
     Series uninterrupted(whole);
     write(uninterrupted, 0, 20);
@@ -110,7 +113,7 @@ TEST(Series, RefusesAFileThatIsShorterThanTheCheckpointSays) {
     const TemporaryFolder folder;
     const auto path = folder.path() / "series.csv";
     Series series(path);
-    series.append(frame_at(0.0));
+    append(series, frame_at(0.0));
     const std::uint64_t offset = series.sync();
     EXPECT_THROW(Series(path, offset + 100), InputError);
 }

@@ -78,7 +78,8 @@ void check_surface(const sim::Surface& surface) {
 void check_solids(const std::vector<sim::Solid>& solids) {
     for (std::size_t i = 0; i < solids.size(); ++i) {
         const sim::Solid& solid = solids[i];
-        if (!(std::isfinite(solid.center[0]) && std::isfinite(solid.center[1]) && std::isfinite(solid.center[2])) || !(solid.radius > 0.0) || !std::isfinite(solid.radius))
+        if (!(std::isfinite(solid.center[0]) && std::isfinite(solid.center[1]) && std::isfinite(solid.center[2])) ||
+            !(solid.radius > 0.0) || !std::isfinite(solid.radius))
             throw InputError(fmt::format("solid {} has no place or no size", i));
     }
 }
@@ -123,9 +124,9 @@ std::span<const double> TableColumn::values(std::size_t first, std::size_t secon
     return scratch;
 }
 
-std::vector<TableColumn> vertex_table(const sim::Frame& frame) {
+std::vector<TableColumn> vertex_table(const sim::Frame& frame, bool radii) {
     std::vector<TableColumn> columns;
-    if (!frame.points.radius.empty()) {
+    if (radii) {
         columns.push_back({.name = "radius", .unit = frame.points.length_unit, .on_second = frame.points.radius});
     }
     const std::vector<sim::Field>& on_surface = frame.surface.vertex_fields;

@@ -39,8 +39,12 @@ struct TableColumn {
 
 /// The columns of surface vertices and points: `radius`, then the surface's fields, then those that only the points
 /// have. Fields with the same name, unit and shape share a column.
+/// @param radii  whether the points have radii
 /// @throws InputError  two fields share a name but not unit and shape
-std::vector<TableColumn> vertex_table(const sim::Frame& frame);
+std::vector<TableColumn> vertex_table(const sim::Frame& frame, bool radii);
+inline std::vector<TableColumn> vertex_table(const sim::Frame& frame) {
+    return vertex_table(frame, !frame.points.radius.empty());
+}
 
 /// What the k-th of `components` values of one item is called: "" , "x" to "z", "xx" to "zz", or a number.
 std::string component_suffix(int components, int k);

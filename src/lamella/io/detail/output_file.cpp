@@ -106,6 +106,10 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::write(std::string_view bytes) { write_all(file_, bytes, path_); }
 
+void AtomicFile::write_at(std::size_t offset, std::string_view bytes) {
+    if (const int error = detail::write_at(file_, offset, bytes); error != 0) throw_io_error("write", path_, error);
+}
+
 void AtomicFile::commit(OldFile old_file) {
     if (::fsync(file_.get()) != 0) throw_io_error("write", path_, errno);
     if (const int error = file_.close(); error != 0) throw_io_error("write", path_, error);

@@ -54,7 +54,9 @@ public:
 
     /// @throws IoError
     void write(std::string_view bytes);
-    /// For what is written at places of one's own choice (write_at), and read back.
+    /// At a place of one's own choice. @throws IoError
+    void write_at(std::size_t offset, std::string_view bytes);
+    /// For what is written at places of one's own choice, and read back.
     const FileDescriptor& descriptor() const { return file_; }
     /// Syncs the bytes and the folder and gives the file its name. @throws IoError  the old file is untouched
     void commit(OldFile old_file = OldFile::kReplace);

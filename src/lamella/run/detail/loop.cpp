@@ -150,17 +150,18 @@ std::optional<std::string> Loop::end_reason() const {
 
 void Loop::write_output(OutputTime due) {
     record_.times.measure(Stage::kOutput, [&] {
-        const sim::Frame frame = solver_->frame();
+        const bool shown = due.frame && scene_.output.frames;
+        const sim::Frame frame = shown ? solver_->frame() : solver_->measured_frame();
         if (!events_) {
-            const std::string length = frame.points.empty() ? "m" : frame.points.length_unit;
+            const std::string& length = frame.points.length_unit;
             events_.emplace(
                 folder_.events(),
                 std::vector<std::string>{fmt::format("time[{}]", frame.time_unit), "kind", fmt::format("x[{}]", length),
                                          fmt::format("y[{}]", length), fmt::format("z[{}]", length), "detail"});
         }
         collect_events();
-        series_.append(frame);
-        if (due.frame && scene_.output.frames) write_frame(frame);
+        series_.append(frame, team_.measure(frame));
+        if (shown) write_frame(frame);
     });
     state_.output_time = due.time;
     state_.output_step = solver_->step();
@@ -168,7 +169,7 @@ void Loop::write_output(OutputTime due) {
 
 void Loop::write_frame(const sim::Frame& frame) {
     const auto index = static_cast<std::int64_t>(state_.frame_times.size());
-    io::write_vtp(folder_.path() / RunFolder::frame_name(index), frame);
+    team_.write_frame(folder_.path() / RunFolder::frame_name(index), frame);
     solver_->mark_frame();
     state_.frame_times.push_back(frame.time);
     write_collection();

@@ -3,9 +3,12 @@
 #include "lamella/core/error.h"
 #include "lamella/dist/agree.h"
 #include "lamella/dist/gather.h"
+#include "lamella/io/frame_files.h"
+#include "lamella/measure/measure.h"
 
 #include <sys/resource.h>
 
+#include <optional>
 #include <utility>
 
 namespace lamella::run {
@@ -20,6 +23,9 @@ enum class Task : std::int64_t {
     kStart,
     kAdvance,
     kFrame,
+    kMeasuredFrame,
+    kMeasure,
+    kWriteFrame,
     kScalars,
     kMarkFrame,
     kSave,
@@ -125,13 +131,26 @@ private:
     sim::StateReader* in_;
 };
 
-/// The frame of the whole on process 0, from each process's share.
-sim::Frame joined(Communicator& processes, sim::Frame share) {
-    share.points.position = dist::gather(processes, std::span<const Vec3>(share.points.position));
-    share.points.radius = dist::gather(processes, std::span<const double>(share.points.radius));
-    for (sim::Field& field : share.points.fields)
-        field.values = dist::gather(processes, std::span<const double>(field.values));
-    return share;
+/// Writes the frame whose shares the processes have, those of lower ranks first, as one file. The values travel column
+/// by column and piece by piece; `path` counts on process 0 only.
+void write_shares(Communicator& processes, const sim::Frame& share, const std::filesystem::path& path) {
+    const sim::Points& points = share.points;
+    std::int64_t counts[] = {static_cast<std::int64_t>(points.size()), static_cast<std::int64_t>(points.radius.size())};
+    processes.sum(counts);
+    std::optional<io::VtpStream> file;
+    dist::together(processes, [&] {
+        if (processes.rank() == 0) file.emplace(path, share, static_cast<std::size_t>(counts[0]), counts[1] > 0);
+    });
+    const auto column = [&](std::span<const double> values) {
+        dist::gather_in_pieces(processes, values, [&](std::span<const double> piece) { file->append(piece); });
+    };
+    column(points.radius);
+    for (const sim::Field& field : points.fields) column(field.values);
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    column({reinterpret_cast<const double*>(points.position.data()), 3 * points.size()});
+    dist::together(processes, [&] {
+        if (file) file->commit();
+    });
 }
 
 ProcessReport own_report(const Communicator* processes) {
@@ -146,7 +165,14 @@ std::vector<ProcessReport> gathered_reports(Communicator& processes) {
     return dist::gather(processes, std::span(&own, 1));
 }
 
-/// Process 0's solver, which has all the others do the same.
+/// Process 0 does its part of what it orders.
+template <class Work>
+auto as_all(Communicator& processes, Order order, Work&& work) {
+    give(processes, order);
+    return in_step(processes, work);
+}
+
+/// Process 0's solver, which has all the others do the same. Its frame is process 0's share.
 class TeamSolver final : public sim::Solver {
 public:
     TeamSolver(Processes processes, std::unique_ptr<sim::Solver> own)
@@ -165,7 +191,10 @@ public:
     std::optional<double> progress() const override { return own_->progress(); }
     double slow_motion() const override { return own_->slow_motion(); }
     sim::Frame frame() const override {
-        return all({Task::kFrame}, [&] { return joined(*processes_, own_->frame()); });
+        return all({Task::kFrame}, [&] { return own_->frame(); });
+    }
+    sim::Frame measured_frame() const override {
+        return all({Task::kMeasuredFrame}, [&] { return own_->measured_frame(); });
     }
     void mark_frame() override {
         all({Task::kMarkFrame}, [&] { own_->mark_frame(); });
@@ -191,15 +220,22 @@ public:
 private:
     template <class Work>
     auto all(Order order, Work&& work) const -> decltype(work()) {
-        give(*processes_, order);
-        return in_step(*processes_, work);
+        return as_all(*processes_, order, work);
     }
 
     Processes processes_;
     std::unique_ptr<sim::Solver> own_;
 };
 
-void obey(Communicator& processes, const Order& order, sim::Solver& solver) {
+/// What another process than 0 has.
+struct Follower {
+    std::unique_ptr<sim::Solver> solver;
+    sim::Frame share;  ///< of the frame that is being shown; else empty
+};
+
+void obey(Communicator& processes, const Order& order, Follower& follower) {
+    sim::Solver& solver = *follower.solver;
+    if (order.task != Task::kMeasure && order.task != Task::kWriteFrame) follower.share = {};
     switch (order.task) {
         case Task::kStart:
             solver.start({});
@@ -209,7 +245,16 @@ void obey(Communicator& processes, const Order& order, sim::Solver& solver) {
             solver.take_events();  // process 0 has them
             break;
         case Task::kFrame:
-            joined(processes, solver.frame());
+            follower.share = solver.frame();
+            break;
+        case Task::kMeasuredFrame:
+            follower.share = solver.measured_frame();
+            break;
+        case Task::kMeasure:
+            measure::measure_frame(follower.share, processes);
+            break;
+        case Task::kWriteFrame:
+            write_shares(processes, follower.share, {});
             break;
         case Task::kScalars:
             solver.scalars();
@@ -252,6 +297,16 @@ std::unique_ptr<sim::Solver> Team::create(const MakeSolver& make) {
     return std::make_unique<TeamSolver>(processes_, dist::together(*processes_, [&] { return make(processes_); }));
 }
 
+std::vector<sim::Scalar> Team::measure(const sim::Frame& share) const {
+    if (!processes_) return measure::measure_frame(share);
+    return as_all(*processes_, {Task::kMeasure}, [&] { return measure::measure_frame(share, *processes_); });
+}
+
+void Team::write_frame(const std::filesystem::path& path, const sim::Frame& share) const {
+    if (!processes_) return io::write_vtp(path, share);
+    as_all(*processes_, {Task::kWriteFrame}, [&] { write_shares(*processes_, share, path); });
+}
+
 std::vector<ProcessReport> Team::report() const {
     if (!processes_) return {own_report(nullptr)};
     give(*processes_, {Task::kReport});
@@ -259,16 +314,16 @@ std::vector<ProcessReport> Team::report() const {
 }
 
 void follow(const Processes& processes, const MakeSolver& make) {
-    std::unique_ptr<sim::Solver> solver;
+    Follower follower;
     while (true) {
         const Order order = give(*processes, {});
         if (order.task == Task::kLeave) return;
         try {
             if (order.task == Task::kCreate) {
-                solver.reset();
-                solver = dist::together(*processes, [&] { return make(processes); });
+                follower = {};
+                follower.solver = dist::together(*processes, [&] { return make(processes); });
             } else {
-                in_step(*processes, [&] { obey(*processes, order, *solver); });
+                in_step(*processes, [&] { obey(*processes, order, follower); });
             }
         } catch (const std::exception&) {
             // Process 0 has the same error and decides what follows from it: a checkpoint, or the end.

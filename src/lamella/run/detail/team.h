@@ -3,6 +3,7 @@
 #include "lamella/dist/communicator.h"
 #include "lamella/sim/solver.h"
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -30,6 +31,12 @@ public:
     /// A solver on every process, which make() creates; the one returned calls them all.
     /// @throws  what make() throws on any of them
     std::unique_ptr<sim::Solver> create(const MakeSolver& make);
+
+    /// What is measured on the whole of which the solver's frame() is this process's share: no process holds all of it.
+    /// The others have kept theirs since they were asked for it.
+    std::vector<sim::Scalar> measure(const sim::Frame& share) const;
+    /// Writes the whole as one file.
+    void write_frame(const std::filesystem::path& path, const sim::Frame& share) const;
 
     /// Of each process, by rank.
     std::vector<ProcessReport> report() const;

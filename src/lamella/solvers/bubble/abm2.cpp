@@ -1,15 +1,15 @@
 // Adams-Bashforth-Moulton predictor-corrector of order 2 [Lankinen20, 3.3.1], with the weights of a variable step and
 // the clock of the step that was taken. The published factors and its clock are there for comparison.
 
-#include <algorithm>
-#include <cmath>
-
-#include <fmt/format.h>
-
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/solvers/bubble/integrator.h"
 #include "lamella/solvers/bubble/move.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace lamella::bubble {
 namespace {
@@ -41,6 +41,9 @@ public:
         : options_(options.integrator), compat_(options.compat), next_step_(options.integrator.initial_step) {
         system.attached = system.attached_size_rates = {&previous_.size};
         for (auto& column : previous_.position) system.attached.push_back(&column);
+        system.scratch = {&predicted_.size, &corrected_.size, &predicted_size_rate_};
+        for (Increment<D>* increment : {&predicted_, &corrected_})
+            for (auto& column : increment->position) system.scratch.push_back(&column);
     }
 
     void begin(System<D>& system) override;
@@ -182,8 +185,7 @@ Step Abm2<D>::step(System<D>& system, double longest) {
             break;
         }
         ++done.rejections;
-        if (next_step_ < 1e-12)
-            throw NumericalError(step_underflow(done.error, tolerance));
+        if (next_step_ < 1e-12) throw NumericalError(step_underflow(done.error, tolerance));
     }
 
     stage_moved(system, corrected_);

@@ -236,11 +236,11 @@ sim::StepReport BubbleSolver<D>::advance(double time_limit) {
     const double wanted = std::min(integrator_->next_step(), options_.integrator.max_step);
     const Landing landing = clock_.landing(time_limit, time_rate_, wanted);
     const Step step = integrator_->step(*system_, landing.longest);
-    system_->follow_images();
     clock_.tick(step, landing, time_limit, time_rate_);
 
     Removal removal = remove_vanished(*system_, options_.compat.removal);
     if (!removal.events.empty()) integrator_->foam_changed();
+    system_->follow_images();  // builds lists of what is left, so not before the vanished are known
     largest_size_ = removal.largest_size;
     for (sim::Event& event : removal.events) {
         event.time = clock_.time;

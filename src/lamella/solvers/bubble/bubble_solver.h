@@ -40,6 +40,7 @@ public:
     std::optional<double> progress() const override;
 
     sim::Frame frame() const override;
+    sim::Frame measured_frame() const override;
     void mark_frame() override;
     std::vector<sim::Scalar> scalars() const override;
     std::vector<sim::Event> take_events() override;
@@ -54,6 +55,8 @@ public:
     }
 
 private:
+    template <class Order>
+    sim::Frame frame_of(Census<D> census, const Order& order, bool all_fields) const;
     std::vector<sim::Scalar> scalars_from(const Census<D>& census) const;
     IdOrder<D> id_order() const { return IdOrder<D>(*system_, start_count_); }
     void remember_start();

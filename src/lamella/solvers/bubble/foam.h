@@ -1,16 +1,16 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "lamella/core/aligned.h"
 #include "lamella/core/parallel.h"
 #include "lamella/core/vec.h"
 #include "lamella/spatial/neighbor_list.h"
 #include "lamella/spatial/periodic_box.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace lamella::bubble {
 
@@ -33,15 +33,15 @@ struct Foam {
     std::size_t slots = 0;
     std::size_t live = 0;  ///< bubbles of the whole foam; with several processes most are elsewhere
 
-    Columns<D> position;      ///< in [0, L) on periodic axes
-    Column size;              ///< q = R^d; 0: vanished
-    Column path_length;       ///< sum of |dx| over the steps
-    Columns<D> start;         ///< position at the start
-    Columns<D> marked;        ///< position at the last frame
-    Columns<D> velocity;      ///< dx/dt at this state
-    Column size_rate;         ///< dq/dt at this state
-    std::array<std::vector<std::int32_t>, D> wraps;  ///< how often the bubble left the box at its upper end
-    std::vector<std::int64_t> id;
+    Columns<D> position;                               ///< in [0, L) on periodic axes
+    Column size;                                       ///< q = R^d; 0: vanished
+    Column path_length;                                ///< sum of |dx| over the steps
+    Columns<D> start;                                  ///< position at the start
+    Columns<D> marked;                                 ///< position at the last frame
+    Columns<D> velocity;                               ///< dx/dt at this state
+    Column size_rate;                                  ///< dq/dt at this state
+    std::array<AlignedVector<std::int32_t>, D> wraps;  ///< how often the bubble left the box at its upper end
+    AlignedVector<std::int64_t> id;
 
     /// The one list of columns that belong to a bubble: reordering, saving and loading use it.
     template <class Self, class Visitor>

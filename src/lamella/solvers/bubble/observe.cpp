@@ -10,13 +10,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lamella::bubble {
 namespace {
 
-template <int D, class Value>
-sim::Field field(const char* name, int components, const IdOrder<D>& order, Value&& value) {
+/// The live bubbles of this process as they are stored.
+template <int D>
+class StoredOrder {
+public:
+    explicit StoredOrder(const Foam<D>& foam) {
+        for (std::size_t i = 0; i < foam.slots; ++i)
+            if (foam.alive(i)) slots_.push_back(static_cast<std::uint32_t>(i));
+    }
+    std::size_t count() const { return slots_.size(); }
+    template <class Value>
+    auto column(Value&& value) const {
+        std::vector<std::decay_t<decltype(value(std::size_t{}))>> values(count());
+        parallel_for(count(), [&](std::size_t n) { values[n] = value(slots_[n]); });
+        return values;
+    }
+
+private:
+    std::vector<std::uint32_t> slots_;
+};
+
+template <class Order, class Value>
+sim::Field field(const char* name, int components, const Order& order, Value&& value) {
     sim::Field f{.name = name, .unit = "-", .components = components, .integer = false, .values = {}};
+    if (components == 1) {
+        f.values = order.column([&](std::size_t i) { return double(value(i, 0)); });
+        return f;
+    }
     const auto c = static_cast<std::size_t>(components);
     f.values.resize(c * order.count());
     for (std::size_t k = 0; k < c; ++k) {
@@ -34,17 +59,12 @@ double component(const Columns<D>& columns, std::size_t i, std::size_t k) {
 
 }  // namespace
 
+/// The largest part of memory is taken here, so what is not needed any more is let go of at once.
 template <int D>
-sim::Frame BubbleSolver<D>::frame() const {
-    observe();
+template <class Order>
+sim::Frame BubbleSolver<D>::frame_of(Census<D> census, const Order& order, bool all_fields) const {
     const Foam<D>& foam = system_->foam;
-    const IdOrder<D> order = id_order();
-    const Census<D> census = take_census(*system_, options_);
-    const Column& energy = options_.compat.energy ? census.energy_thesis : census.energy;
-    // First, before the frame takes its memory.
-    std::vector<sim::Scalar> scalars_now = scalars_from(census);
     const Vec<D> inverse = foam.box.inverse_lengths();
-
     sim::Frame frame;
     frame.solver = "bubble";
     frame.time = clock_.time;
@@ -56,40 +76,69 @@ sim::Frame BubbleSolver<D>::frame() const {
         frame.box->lengths[k] = foam.box.lengths[k];
         frame.box->periodic[k] = foam.box.periodic[k];
     }
+    frame.scalars = scalars_from(census);
+    census.force = {};
+    (options_.compat.energy ? census.energy : census.energy_thesis) = {};
+    if (!all_fields)
+        for (Column* column : {&census.energy, &census.energy_thesis, &census.pressure, &census.free_surface})
+            *column = {};
     frame.points.length_unit = "-";
-    frame.points.position = order.column([&](std::size_t i) {
-        Vec3 x;
-        for (std::size_t k = 0; k < D; ++k) x[k] = foam.position[k][i];
-        return x;
-    });
-    frame.points.radius = order.column([&](std::size_t i) { return Shape<D>::radius(foam.size[i]); });
 
     auto& fields = frame.points.fields;
     const auto add = [&](const char* name, int components, auto&& value) -> sim::Field& {
         return fields.emplace_back(field(name, components, order, value));
     };
     using Index = std::size_t;
-    add("id", 1, [&](Index i, Index) { return static_cast<double>(foam.id[i]); }).integer = true;
-    add("radius_rate", 1, [&](Index i, Index) {
-        const double r = Shape<D>::radius(foam.size[i]);
-        return foam.size_rate[i] / (D == 2 ? 2.0 * r : 3.0 * r * r);
-    });
+    const auto add_census = [&](const char* name, auto& column) -> sim::Field& {
+        sim::Field& added = add(name, 1, [&](Index i, Index) { return static_cast<double>(column[i]); });
+        column = {};
+        return added;
+    };
+    add_census("contacts", census.contacts).integer = true;
     add("velocity", 3, [&](Index i, Index k) { return component<D>(foam.velocity, i, k); });
     add("path_length", 1, [&](Index i, Index) { return foam.path_length[i]; });
     add("displacement", 3, [&](Index i, Index k) {
         return k < D ? foam.position[k][i] + foam.wraps[k][i] * foam.box.lengths[k] - foam.start[k][i] : 0.0;
     });
-    add("frame_displacement", 3, [&](Index i, Index k) {
-        if (k >= D) return 0.0;
-        const double s = foam.position[k][i] - foam.marked[k][i];
-        return s - foam.box.lengths[k] * std::nearbyint(s * inverse[k]);
+    if (all_fields) {
+        add_census("energy", options_.compat.energy ? census.energy_thesis : census.energy);
+        add_census("pressure", census.pressure);
+        add_census("free_surface", census.free_surface);
+        census = {};
+        add("id", 1, [&](Index i, Index) { return static_cast<double>(foam.id[i]); }).integer = true;
+        add("radius_rate", 1, [&](Index i, Index) {
+            const double r = Shape<D>::radius(foam.size[i]);
+            return foam.size_rate[i] / (D == 2 ? 2.0 * r : 3.0 * r * r);
+        });
+        add("frame_displacement", 3, [&](Index i, Index k) {
+            if (k >= D) return 0.0;
+            const double s = foam.position[k][i] - foam.marked[k][i];
+            return s - foam.box.lengths[k] * std::nearbyint(s * inverse[k]);
+        });
+    }
+    frame.points.position = order.column([&](std::size_t i) {
+        Vec3 x;
+        for (std::size_t k = 0; k < D; ++k) x[k] = foam.position[k][i];
+        return x;
     });
-    add("energy", 1, [&](Index i, Index) { return energy[i]; });
-    add("contacts", 1, [&](Index i, Index) { return static_cast<double>(census.contacts[i]); }).integer = true;
-    add("pressure", 1, [&](Index i, Index) { return census.pressure[i]; });
-    add("free_surface", 1, [&](Index i, Index) { return census.free_surface[i]; });
-    frame.scalars = std::move(scalars_now);
+    frame.points.radius = order.column([&](std::size_t i) { return Shape<D>::radius(foam.size[i]); });
     return frame;
+}
+
+template <int D>
+sim::Frame BubbleSolver<D>::frame() const {
+    observe();
+    system_->release_scratch();
+    Census<D> census = take_census(*system_, options_);
+    return frame_of(std::move(census), id_order(), true);
+}
+
+template <int D>
+sim::Frame BubbleSolver<D>::measured_frame() const {
+    observe();
+    system_->release_scratch();
+    Census<D> census = take_census(*system_, options_);
+    return frame_of(std::move(census), StoredOrder<D>(system_->foam), false);
 }
 
 template <int D>
@@ -153,7 +202,6 @@ std::vector<sim::Scalar> BubbleSolver<D>::characteristic_numbers() const {
                     "as many as work at 80 % of one process's speed each, by a model (docs/clusters.md)"});
     list.push_back(
         {"memory_per_process", "MB", plan.memory * 1e-6, "of each of that many, copies of others' bubbles included"});
-    list.push_back({"memory_process_0", "MB", plan.memory_first * 1e-6, "of the one that gathers and writes frames"});
     list.push_back(
         {"halo_share", "-", plan.halo_share, "copies of others' bubbles per bubble of a process, at the start"});
     return list;

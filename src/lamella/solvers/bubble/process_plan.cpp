@@ -16,17 +16,12 @@ constexpr double kSecondsPerBubble = D == 2 ? 3e-8 : 8e-8;
 constexpr double kSecondsPerCopy = 2e-8;
 constexpr double kLatency = 7e-6;
 
-// Resident memory in bytes per bubble, measured at 1e6 bubbles with frames (docs/clusters.md). The most is taken while
-// a frame is written; by other processes than 0 while bubbles change hands and neighbor lists are built.
+// Resident memory in bytes per bubble, measured at 1e6 bubbles with frames (docs/clusters.md).
 constexpr double kProgramBytes = 34e6;
 template <int D>
-constexpr double kAlone = D == 2 ? 640.0 : 835.0;
+constexpr double kAlone = D == 2 ? 460.0 : 560.0;
 template <int D>
-constexpr double kShared = D == 2 ? 550.0 : 680.0;
-template <int D>
-constexpr double kShowing = D == 2 ? 330.0 : 540.0;  // while there is a frame, beside it
-template <int D>
-constexpr double kGathered = D == 2 ? 380.0 : 405.0;  // the frame of the whole and its text
+constexpr double kShared = D == 2 ? 480.0 : 630.0;
 constexpr double kCopy = 100.0;
 
 /// Mean of q = R^d over the radii of the start, taken as normal.
@@ -71,12 +66,9 @@ double halo_share(const Options& options, double processes) {
 }
 
 template <int D>
-double process_memory(const Options& options, double processes, bool first) {
+double process_memory(const Options& options, double processes) {
     if (processes <= 1.0) return kProgramBytes + options.count * kAlone<D>;
-    const double own = options.count / processes;
-    const double working = own * (kShared<D> + kCopy * halo_share<D>(options, processes));
-    const double gathering = own * kShowing<D> + options.count * kGathered<D>;
-    return kProgramBytes + (first ? std::max(working, gathering) : working);
+    return kProgramBytes + options.count / processes * (kShared<D> + kCopy * halo_share<D>(options, processes));
 }
 
 template <int D>
@@ -91,16 +83,15 @@ ProcessPlan plan_processes(const Options& options) {
     };
     for (double p = 2.0; p <= kMost && cost(p) * p <= kWorthIt * cost(1.0); p *= 2.0) plan.processes = p;
     plan.halo_share = halo_share<D>(options, plan.processes);
-    plan.memory_alone = process_memory<D>(options, 1.0, true);
-    plan.memory = process_memory<D>(options, plan.processes, false);
-    plan.memory_first = process_memory<D>(options, plan.processes, true);
+    plan.memory_alone = process_memory<D>(options, 1.0);
+    plan.memory = process_memory<D>(options, plan.processes);
     return plan;
 }
 
 template double halo_share<2>(const Options&, double);
 template double halo_share<3>(const Options&, double);
-template double process_memory<2>(const Options&, double, bool);
-template double process_memory<3>(const Options&, double, bool);
+template double process_memory<2>(const Options&, double);
+template double process_memory<3>(const Options&, double);
 template ProcessPlan plan_processes<2>(const Options&);
 template ProcessPlan plan_processes<3>(const Options&);
 

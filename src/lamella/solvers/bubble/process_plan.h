@@ -10,7 +10,6 @@ struct ProcessPlan {
     double halo_share = 0.0;    ///< copies per own bubble with so many processes
     double memory_alone = 0.0;  ///< the most that one process on its own needs [bytes]
     double memory = 0.0;        ///< the most that each of so many needs [bytes]
-    double memory_first = 0.0;  ///< and process 0, which gathers frames [bytes]
 };
 
 /// Copies per own bubble where a foam is shared by so many processes: the shell of width <R> + R_max + skin around a
@@ -20,9 +19,8 @@ template <int D>
 double halo_share(const Options& options, double processes);
 
 /// The most memory that one of so many processes needs: state and neighbor lists, and what a frame takes. [bytes]
-/// @param first  of process 0
 template <int D>
-double process_memory(const Options& options, double processes, bool first);
+double process_memory(const Options& options, double processes);
 
 /// The largest power of two for which an evaluation of the rates costs each process at most 1.25 times its share:
 ///   t(P) = N/P (c + c_halo s(P)) + 4 l log2 P

@@ -31,7 +31,12 @@ enum class StagesEnd {
 template <int D>
 class Rkc2 final : public Integrator<D> {
 public:
-    explicit Rkc2(const Options& options) : options_(options.integrator), next_step_(options.integrator.initial_step) {}
+    Rkc2(const Options& options, System<D>& system)
+        : options_(options.integrator), next_step_(options.integrator.initial_step) {
+        system.scratch = {&last_.size, &before_.size};
+        for (Increment<D>* increment : {&last_, &before_})
+            for (auto& column : increment->position) system.scratch.push_back(&column);
+    }
 
     void begin(System<D>& system) override { evaluate_first(system); }
     Step step(System<D>& system, double longest) override;
@@ -227,8 +232,8 @@ Step Rkc2<D>::step(System<D>& system, double longest) {
 }  // namespace
 
 template <int D>
-std::unique_ptr<Integrator<D>> make_rkc2(const Options& options, System<D>&) {
-    return std::make_unique<Rkc2<D>>(options);
+std::unique_ptr<Integrator<D>> make_rkc2(const Options& options, System<D>& system) {
+    return std::make_unique<Rkc2<D>>(options, system);
 }
 
 template std::unique_ptr<Integrator<2>> make_rkc2<2>(const Options&, System<2>&);

@@ -102,33 +102,54 @@ dist::Halo System<D>::find_copies(const std::vector<std::uint32_t>& kept, double
     return {processes, std::move(wanted)};
 }
 
+/// Lists of the kept bubbles, in their order, and the copies that stand in them.
 template <int D>
-void System<D>::rebuild(double least_reach) {
-    distribute();
-    // Drop the vanished first: the search then sees live bubbles only.
-    const std::vector<std::uint32_t> kept = live_slots();
-    Columns<D> position = foam.position;
+spatial::NeighborSearch<D> System<D>::search_neighbors(const std::vector<std::uint32_t>& kept, dist::Halo& halo) {
+    Columns<D> position;
     Column radius(kept.size());
-    std::vector<std::int64_t> id(kept.size());
-    for (auto& column : position) reorder(column, kept, kept.size());
+    AlignedVector<std::int64_t> id(kept.size());
+    for (std::size_t k = 0; k < D; ++k) {
+        position[k].resize(kept.size());
+        parallel_for(kept.size(), [&](std::size_t i) { position[k][i] = foam.position[k][kept[i]]; });
+    }
     parallel_for(kept.size(), [&](std::size_t i) {
         radius[i] = Shape<D>::radius(foam.size[kept[i]]);
         id[i] = foam.id[kept[i]];
     });
-
-    skin_ = std::max(options_.integrator.skin * mean_radius(), 2.0 * least_reach);
     const double largest = domain_->largest(parallel_max(kept.size(), 0.0, [&](std::size_t i) { return radius[i]; }));
-    dist::Halo halo = find_copies(kept, largest);
+    halo = find_copies(kept, largest);
     const auto append = [&](auto& column) {
         const auto copies = halo.fetch(std::span(std::as_const(column)));
+        column.reserve(column.size() + copies.size());
         column.insert(column.end(), copies.begin(), copies.end());
     };
     for (auto& column : position) append(column);
     append(radius);
     append(id);
-    neighbors_ = {};  // the old lists make room for the new ones
-    auto search = spatial::find_neighbors<D>(foam.box, pointers<D>(position), radius.data(), id.data(), radius.size(),
-                                             skin_, {.count = halo.copies(), .largest_radius = largest});
+    return spatial::find_neighbors<D>(foam.box, pointers<D>(position), radius.data(), id.data(), radius.size(), skin_,
+                                      {.count = halo.copies(), .largest_radius = largest});
+}
+
+template <int D>
+void System<D>::release_scratch() {
+    rates = {};
+    for (Column* column : scratch) *column = {};
+}
+
+template <int D>
+void System<D>::rebuild(double least_reach) {
+    distribute();
+    // What the new lists make obsolete makes room for them; the vanished are dropped, so that the search sees live
+    // bubbles only.
+    release_scratch();
+    stage = {};
+    built_position_ = {};
+    built_radius_ = {};
+    neighbors_ = {};
+    const std::vector<std::uint32_t> kept = live_slots();
+    skin_ = std::max(options_.integrator.skin * mean_radius(), 2.0 * least_reach);
+    dist::Halo halo;
+    auto search = search_neighbors(kept, halo);
     neighbors_ = std::move(search.list);
     const std::size_t length = spatial::padded(kept.size());
     std::vector<std::uint32_t> place(kept.size());
@@ -144,7 +165,6 @@ void System<D>::rebuild(double least_reach) {
     foam.slots = kept.size();
     foam.live = static_cast<std::size_t>(domain_->sum(static_cast<std::int64_t>(kept.size())));
     stage.resize(length);
-    rates.resize(length);
     stage_current();
     built_position_ = stage.position;
     built_radius_ = stage.radius;
@@ -202,6 +222,7 @@ Evaluation System<D>::evaluate(Gas gas, Stiffness stiffness) {
     read_by_neighbors.push_back(&stage.radius);
     if (gas == Gas::kOn && model.exchanges_gas()) read_by_neighbors.push_back(&stage.inverse_radius);
     domain_->begin_refresh(read_by_neighbors);
+    rates.resize(length());
     Evaluation evaluation =
         contact_pass<D>(model, foam.box, neighbors_, stage, gas, stiffness, *domain_, foam.live, rates);
     const double walls = liquid_.apply(neighbors_, stage, foam.velocity, *domain_, rates);

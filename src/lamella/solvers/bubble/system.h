@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <vector>
-
 #include "lamella/dist/partition.h"
 #include "lamella/solvers/bubble/domain.h"
 #include "lamella/solvers/bubble/foam.h"
@@ -12,6 +8,10 @@
 #include "lamella/solvers/bubble/model.h"
 #include "lamella/solvers/bubble/options.h"
 #include "lamella/solvers/bubble/rates.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 namespace lamella::bubble {
 
@@ -36,6 +36,8 @@ public:
     std::vector<Column*> attached;
     /// Those of them that are earlier size rates: they must keep adding up to zero when bubbles vanish.
     std::vector<Column*> attached_size_rates;
+    /// Columns of an integrator that hold nothing between its steps, nor when lists are built anew.
+    std::vector<Column*> scratch;
 
     const spatial::NeighborList<D>& neighbors() const { return neighbors_; }
     Domain& domain() const { return *domain_; }
@@ -47,8 +49,8 @@ public:
     /// Hands every bubble to the process that owns its place, and drops vanished ones; with one process, nothing.
     void distribute();
 
-    /// Drops vanished bubbles, distributes and builds new neighbor lists for the current state. The lists stay valid while no
-    /// bubble's |dx| + dR passes reach(), at least `least_reach`.
+    /// Drops vanished bubbles, distributes and builds new neighbor lists for the current state. The lists stay valid
+    /// while no bubble's |dx| + dR passes reach(), at least `least_reach`.
     void rebuild(double least_reach = 0.0);
     double reach() const { return 0.5 * skin_; }
     std::int64_t rebuilds() const { return rebuilds_; }
@@ -61,6 +63,9 @@ public:
 
     /// Brings the copies' positions and sizes up to date: what a look at the neighbors of the current state needs.
     void refresh_copies();
+
+    /// Lets go of the memory of the rates and of the integrator's scratch: evaluations and steps take it again.
+    void release_scratch();
 
     /// stage = the current state.
     void stage_current();
@@ -78,6 +83,7 @@ private:
     Vec<D> place(std::size_t i) const;
     std::vector<std::uint32_t> live_slots() const;
     std::vector<Column*> attached_in_use() const;
+    spatial::NeighborSearch<D> search_neighbors(const std::vector<std::uint32_t>& kept, dist::Halo& halo);
     dist::Halo find_copies(const std::vector<std::uint32_t>& kept, double largest_radius) const;
 
     Options options_;
