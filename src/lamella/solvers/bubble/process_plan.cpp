@@ -17,7 +17,7 @@ constexpr double kSecondsPerCopy = 2e-8;
 constexpr double kLatency = 7e-6;
 
 // Resident memory in bytes per bubble, measured at 1e6 bubbles with frames (docs/clusters.md).
-constexpr double kProgramBytes = 34e6;
+constexpr double kProgramBytes = 38e6;
 template <int D>
 constexpr double kAlone = D == 2 ? 460.0 : 560.0;
 template <int D>
