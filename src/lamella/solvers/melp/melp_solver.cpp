@@ -2,10 +2,8 @@
 
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
-#include "lamella/linalg/small_cholesky.h"
 #include "lamella/solvers/melp/keep_inside.h"
 #include "lamella/solvers/melp/operators.h"
-#include "lamella/solvers/melp/population.h"
 #include "lamella/solvers/melp/redistribution.h"
 #include "lamella/solvers/melp/refusals.h"
 #include "lamella/solvers/melp/solids.h"
@@ -15,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -26,16 +23,6 @@ namespace lamella::melp {
 namespace {
 
 constexpr double kMostOnEdges = 2.0;  // of the reference concentration
-
-/// sum a (u . n) n over each region [m^3/s].
-std::vector<Vec3> normal_flows(const Geometry& geometry, const CoarseParticles& coarse, std::size_t regions) {
-    std::vector<Vec3> flow(regions);
-    for (std::size_t i = 0; i < coarse.size(); ++i) {
-        const Vec3& n = geometry.normal[i];
-        flow[static_cast<std::size_t>(coarse.region[i])] += (geometry.area[i] * dot(coarse.velocity[i], n)) * n;
-    }
-    return flow;
-}
 
 }  // namespace
 
@@ -299,56 +286,6 @@ void MelpSolver::give_to_fine(double dt) {
                        -std::expm1(-options_.thickness_rate * dt), fine_);
 }
 
-/// Momentum of each region's film that moves with these velocities, per density [m^4/s].
-std::vector<Vec3> MelpSolver::region_momenta(std::span<const Vec3> velocity) const {
-    std::vector<Vec3> momentum(gas_.size());
-    for (std::size_t i = 0; i < coarse_.size(); ++i)
-        momentum[static_cast<std::size_t>(coarse_.region[i])] += films_.liquid_volume[i] * velocity[i];
-    return momentum;
-}
-
-/// Mean velocity of each region's film, by mass.
-std::vector<Vec3> MelpSolver::region_velocities() const {
-    std::vector<Vec3> velocity = region_momenta(coarse_.velocity);
-    std::vector<double> volume(gas_.size(), 0.0);
-    for (std::size_t i = 0; i < coarse_.size(); ++i)
-        volume[static_cast<std::size_t>(coarse_.region[i])] += films_.liquid_volume[i];
-    for (std::size_t r = 0; r < gas_.size(); ++r) velocity[r] = velocity[r] / volume[r];
-    return velocity;
-}
-
-/// The filter, and coarse particles that slip through the film, change a region's momentum by a few millionths of m c.
-/// The uniform velocity along the normals that has it is added. Films without fine particles fly with their normal
-/// motion and need none.
-void MelpSolver::give_back(const std::vector<Vec3>& momentum) {
-    std::vector<Vec3> velocity(coarse_.size());
-    for (std::size_t i = 0; i < coarse_.size(); ++i) velocity[i] = velocity_of(i);
-    const std::vector<Vec3> now = region_momenta(velocity);
-    std::vector<Vec3> missing(gas_.size());
-    for (std::size_t r = 0; r < gas_.size(); ++r)
-        if (even_[r].liquid_volume == 0.0 && !gas_[r].held && !gas_[r].burst) missing[r] = momentum[r] - now[r];
-    add_uniform(missing, films_.liquid_volume);
-}
-
-/// Adds to each region the part along the normals of the uniform velocity U for which sum w n n^T U is what is missing.
-void MelpSolver::add_uniform(const std::vector<Vec3>& missing, std::span<const double> weight) {
-    std::vector<std::array<double, 9>> along(gas_.size());  // sum w n n^T
-    for (std::size_t i = 0; i < coarse_.size(); ++i)
-        for (std::size_t k = 0; k < 3; ++k)
-            for (std::size_t m = 0; m < 3; ++m)
-                along[static_cast<std::size_t>(coarse_.region[i])][3 * k + m] +=
-                    weight[i] * geometry_.normal[i][k] * geometry_.normal[i][m];
-    std::vector<Vec3> added(gas_.size());
-    for (std::size_t r = 0; r < gas_.size(); ++r) {
-        std::array<double, 3> u{missing[r][0], missing[r][1], missing[r][2]};
-        if (squared_norm(missing[r]) > 0.0 && linalg::solve_positive<3>(along[r], u)) added[r] = {{u[0], u[1], u[2]}};
-    }
-    for (std::size_t i = 0; i < coarse_.size(); ++i) {
-        const Vec3& n = geometry_.normal[i];
-        coarse_.velocity[i] += dot(added[static_cast<std::size_t>(coarse_.region[i])], n) * n;
-    }
-}
-
 /// Coarse particles follow the film along its normals and its region as a whole, and spread; where they leave the
 /// liquid behind, they take the velocity of the place they come to.
 void MelpSolver::move_coarse(double dt, const NormalStep& step) {
@@ -407,21 +344,6 @@ void MelpSolver::move_fine(double dt) {
                 fine_.position, fine_.velocity);
     constexpr std::int64_t kSortEvery = 32;
     if ((steps_ + 1) % kSortEvery == 0) sort_fine_particles(fine_, spacing_);
-}
-
-/// Films that stretch or shrink get or lose coarse particles. Their liquid, and so most of their momentum, is that of
-/// the fine ones; what is missing where they fly is given back with the rest. Films without fine particles get a
-/// uniform velocity along the normals, for their momentum is that of the particles.
-void MelpSolver::keep_spacing() {
-    if (!options_.insertion) return;
-    const std::vector<Vec3> before = normal_flows(geometry_, coarse_, gas_.size());
-    if (!repopulate(coarse_, geometry_, gas_)) return;
-    update_shape();
-    const std::vector<Vec3> after = normal_flows(geometry_, coarse_, gas_.size());
-    std::vector<Vec3> missing(gas_.size());
-    for (std::size_t r = 0; r < gas_.size(); ++r)
-        if (even_[r].liquid_volume > 0.0 && !gas_[r].held) missing[r] = before[r] - after[r];
-    add_uniform(missing, geometry_.area);
 }
 
 void MelpSolver::set_rims(double time) {
