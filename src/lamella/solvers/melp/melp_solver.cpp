@@ -307,7 +307,7 @@ void MelpSolver::move_coarse(double dt, const NormalStep& step) {
         coarse_.position[i] += along + (dt * step.mean[i]) * n + along_patch(geometry_.patch[i], shift[i]);
         coarse_.velocity[i] += slope[i] * (along + shift[i] - liquid);
     }
-    coarse_.frame_normal = geometry_.normal;
+    coarse_.frame_normal = steady_normals(geometry_, coarse_.frame_normal);
     pull_back_spikes(dt);
 }
 

@@ -64,18 +64,21 @@ std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, do
 std::vector<Vec3> evening_shift(const Geometry& g, const CoarseParticles& coarse, std::size_t regions, double spacing) {
     const double reach = kReach * spacing * spacing, farthest = kFarthest * spacing;
     std::vector<Vec3> shift = gradient(g, coarse.position, smoothed(g, excess(g, coarse, regions), reach));
-    double longest = 0.0;
-    for (Vec3& d : shift) {
-        d *= -reach;
-        longest = std::max(longest, norm(d));
+    // Of each film on its own: one crowded spot would hold back all of a foam.
+    std::vector<double> longest(regions, 0.0);
+    for (std::size_t i = 0; i < shift.size(); ++i) {
+        shift[i] *= -reach;
+        double& most = longest[static_cast<std::size_t>(coarse.region[i])];
+        most = std::max(most, norm(shift[i]));
     }
-    const double factor = longest > farthest ? farthest / longest : 1.0;
     const std::vector<Vec3> uneven = unevenness(g, coarse.position);
     for (std::size_t i = 0; i < shift.size(); ++i) {
         Vec3 away = (-kShort * spacing * spacing) * uneven[i];
         away -= dot(away, g.normal[i]) * g.normal[i];
         const double length = norm(away);
-        shift[i] = factor * shift[i] + (length > farthest ? farthest / length : 1.0) * away;
+        const double most = longest[static_cast<std::size_t>(coarse.region[i])];
+        shift[i] =
+            (most > farthest ? farthest / most : 1.0) * shift[i] + (length > farthest ? farthest / length : 1.0) * away;
     }
     return shift;
 }
