@@ -16,7 +16,7 @@ std::vector<Contact> pairs_in(const Neighbors& other, std::span<const std::int32
     for (std::size_t i = 0; i < other.size(); ++i)
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
             const Contact pair{region[i], region[other.index[k]], time};
-            // Neighbors lie in runs of one region.
+            // Many neighbors lie in runs of one region.
             if (pair.a < pair.b && (found.empty() || found.back().a != pair.a || found.back().b != pair.b))
                 found.push_back(pair);
         }

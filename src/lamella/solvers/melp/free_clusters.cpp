@@ -1,7 +1,7 @@
 #include "lamella/solvers/melp/free_clusters.h"
 
-#include "lamella/core/parallel.h"
 #include "lamella/linalg/dense.h"
+#include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/surface.h"
 
 #include <algorithm>
@@ -102,22 +102,41 @@ void FreeCluster::remove_resultant(std::vector<double>& values,
                                    std::span<const Vec3> beside,
                                    std::span<const double> share) const {
     const std::size_t count = directions_.size();
-    std::vector<double> matrix(count * count, 0.0), resultant(count, 0.0);
-    for (const std::size_t i : members_) {
-        const Rigid e = rigid(i, geometry_.normal[i]);
-        const Rigid f = rigid(i, values[i] * geometry_.normal[i] + beside[i]);
-        for (std::size_t a = 0; a < count; ++a) {
-            resultant[a] += f[a];
-            for (std::size_t b = 0; b < count; ++b) matrix[a * count + b] += share[i] * e[a] * e[b];
+    struct Sums {
+        std::array<double, kRigid * kRigid> matrix{};
+        std::array<double, kRigid> resultant{};
+    };
+    const auto of_members = [&](std::size_t begin, std::size_t end) {
+        Sums sums;
+        for (std::size_t m = begin; m < end; ++m) {
+            const std::size_t i = members_[m];
+            const Rigid e = rigid(i, geometry_.normal[i]);
+            const Rigid f = rigid(i, values[i] * geometry_.normal[i] + beside[i]);
+            for (std::size_t a = 0; a < count; ++a) {
+                sums.resultant[a] += f[a];
+                for (std::size_t b = 0; b < count; ++b) sums.matrix[a * count + b] += share[i] * e[a] * e[b];
+            }
         }
-    }
+        return sums;
+    };
+    const auto both = [](Sums a, const Sums& b) {
+        for (std::size_t k = 0; k < a.matrix.size(); ++k) a.matrix[k] += b.matrix[k];
+        for (std::size_t k = 0; k < a.resultant.size(); ++k) a.resultant[k] += b.resultant[k];
+        return a;
+    };
+    const Sums sums = parallel_reduce(members_.size(), Sums{}, of_members, both);
+    const std::vector<double> matrix(sums.matrix.begin(),
+                                     sums.matrix.begin() + static_cast<std::ptrdiff_t>(count * count));
+    const std::vector<double> resultant(sums.resultant.begin(),
+                                        sums.resultant.begin() + static_cast<std::ptrdiff_t>(count));
     // A sphere cannot be twisted by forces along its normals: such directions stay as they are.
     constexpr double kCannot = 1e-4;
     const auto z = linalg::solve_symmetric(count, matrix, resultant, kCannot).x;
-    for (const std::size_t i : members_) {
+    for_each_particle(members_.size(), [&](std::size_t m) {
+        const std::size_t i = members_[m];
         const Rigid e = rigid(i, geometry_.normal[i]);
         for (std::size_t a = 0; a < count; ++a) values[i] -= share[i] * e[a] * z[a];
-    }
+    });
 }
 
 /// A vector at a particle and its moment about the center, over the cluster's size, in the cluster's directions.
@@ -159,7 +178,7 @@ std::vector<double> gas_areas(const CoarseParticles& coarse,
                               std::span<const Gas> gas,
                               std::span<const RimPiece> rims) {
     std::vector<double> area(geometry.size()), share(geometry.size());
-    parallel_for(area.size(), [&](std::size_t i) {
+    for_each_particle(area.size(), [&](std::size_t i) {
         const Neighbors& other = geometry.neighbors.other;
         area[i] = other.begin(i) == other.end(i) ? geometry.area[i] : cell_area(coarse, geometry, i);
         share[i] = area[i] * fold(geometry, i);

@@ -3,6 +3,7 @@
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/solvers/melp/keep_inside.h"
+#include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/operators.h"
 #include "lamella/solvers/melp/redistribution.h"
 #include "lamella/solvers/melp/refusals.h"
@@ -294,7 +295,7 @@ void MelpSolver::move_coarse(double dt, const NormalStep& step) {
     std::vector<Vec3> shift = options_.redistribution ? evening_shift(geometry_, coarse_, gas_.size(), spacing_)
                                                       : std::vector<Vec3>(coarse_.size());
     const std::vector<Tensor> slope = gradient(geometry_, coarse_.position, coarse_.velocity);
-    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+    for_each_particle(coarse_.size(), [&](std::size_t i) {
         const Vec3& n = geometry_.normal[i];
         const auto region = static_cast<std::size_t>(coarse_.region[i]);
         // Those of a film that has burst go with the liquid: edges move that far in a step. So do those of a film that
@@ -306,7 +307,7 @@ void MelpSolver::move_coarse(double dt, const NormalStep& step) {
         const Vec3 liquid = dt * (coarse_.velocity[i] - dot(coarse_.velocity[i], n) * n);
         coarse_.position[i] += along + (dt * step.mean[i]) * n + along_patch(geometry_.patch[i], shift[i]);
         coarse_.velocity[i] += slope[i] * (along + shift[i] - liquid);
-    }
+    });
     coarse_.frame_normal = steady_normals(geometry_, coarse_.frame_normal);
     pull_back_spikes(dt);
 }

@@ -9,8 +9,8 @@
 
 namespace lamella::melp {
 
-/// For each coarse particle the others within the kernel's reach, by rows, each row in ascending order; pairs are in
-/// both rows with the same bits. Built once per step, used by every stage.
+/// For each coarse particle the others within the kernel's reach, by rows, in the order of a search; pairs are in both
+/// rows with the same bits. Built once per step, used by every stage.
 struct Neighbors {
     std::vector<std::uint32_t> start;  ///< size + 1
     std::vector<std::uint32_t> index;

@@ -1,6 +1,7 @@
 #include "lamella/solvers/melp/operators.h"
 
 #include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/loops.h"
 
 namespace lamella::melp {
 namespace {
@@ -114,7 +115,7 @@ std::vector<Vec3> steady_normals(const Geometry& g, std::span<const Vec3> last) 
         result[i] += (g.area[g.images.index[k]] * g.images.weight[k]) * g.images.normal[k];
     });
     const double own = g.neighbors.same.kernel.value(0.0);
-    parallel_for(result.size(), [&](std::size_t i) {
+    for_each_particle(result.size(), [&](std::size_t i) {
         result[i] += (g.area[i] * own) * g.normal[i];
         const Vec3 between = result[i] + norm(result[i]) * last[i];
         const double length = norm(between);

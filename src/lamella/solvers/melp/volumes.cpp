@@ -1,6 +1,6 @@
 #include "lamella/solvers/melp/volumes.h"
 
-#include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/surface.h"
 
 namespace lamella::melp {
@@ -41,7 +41,7 @@ std::vector<double> particle_volumes(const CoarseParticles& coarse,
     for (std::size_t r = 0; r < gas.size(); ++r) center[r] = center[r] / area[r];
     for (const RimPiece& piece : rims) center[static_cast<std::size_t>(piece.region)] = piece.a;  // in the plate
     std::vector<double> share(coarse.size());
-    parallel_for(coarse.size(), [&](std::size_t i) {
+    for_each_particle(coarse.size(), [&](std::size_t i) {
         const Vec3& o = center[static_cast<std::size_t>(coarse.region[i])];
         const Neighbors& other = geometry.neighbors.other;
         share[i] = other.begin(i) == other.end(i)
