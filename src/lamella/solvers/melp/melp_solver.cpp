@@ -108,7 +108,7 @@ sim::StepReport MelpSolver::advance(double time_limit) {
                 steps_ + 1, dt, time_, fault));
         dt = shorter;
     }
-    const std::vector<Vec3> momentum = region_momenta(coarse_.velocity);
+    const std::vector<Vec3> momentum = region_momenta(coarse_.velocity), drift = region_drifts_now();
     filter_short_waves();
     give_to_fine(dt);
     move_coarse(dt, normal);
@@ -121,8 +121,9 @@ sim::StepReport MelpSolver::advance(double time_limit) {
     keep_spacing();
     time_ = dt >= time_limit - time_ ? time_limit : time_ + dt;
     follow_contacts(time_);
+    give_back_to_even_films(drift);
     update_liquid();
-    give_back(momentum);
+    give_back_to_liquid(momentum);
     follow_particle_volumes(dt);
     vent(dt);
     step_ = dt;

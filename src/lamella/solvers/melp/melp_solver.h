@@ -99,7 +99,10 @@ private:
     void keep_coarse_inside();
     void update_shape();
     void update_liquid();
-    void give_back(const std::vector<Vec3>& momentum);
+    void give_back_to_liquid(const std::vector<Vec3>& momentum);
+    void give_back_to_even_films(const std::vector<Vec3>& drift);
+    std::vector<Vec3> region_drifts_now() const;
+    bool flies(std::size_t region) const;
     void add_uniform(const std::vector<Vec3>& missing, std::span<const double> weight);
     void follow_particle_volumes(double dt);
 

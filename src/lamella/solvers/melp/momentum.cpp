@@ -7,20 +7,6 @@
 #include <array>
 
 namespace lamella::melp {
-namespace {
-
-/// sum a (u . n) n over each region [m^3/s].
-std::vector<Vec3> normal_flows(const Geometry& geometry, const CoarseParticles& coarse, std::size_t regions) {
-    std::vector<Vec3> flow(regions);
-    for (std::size_t i = 0; i < coarse.size(); ++i) {
-        const Vec3& n = geometry.normal[i];
-        flow[static_cast<std::size_t>(coarse.region[i])] += (geometry.area[i] * dot(coarse.velocity[i], n)) * n;
-    }
-    return flow;
-}
-
-}  // namespace
-
 /// Momentum of each region's film that moves with these velocities, per density [m^4/s].
 std::vector<Vec3> MelpSolver::region_momenta(std::span<const Vec3> velocity) const {
     std::vector<Vec3> momentum(gas_.size());
@@ -39,18 +25,38 @@ std::vector<Vec3> MelpSolver::region_velocities() const {
     return velocity;
 }
 
-/// The filter, and coarse particles that slip through the film, change a region's momentum by a few millionths of m c.
-/// The uniform velocity along the normals that has it is added. Films without fine particles fly with their normal
-/// motion and need none.
-void MelpSolver::give_back(const std::vector<Vec3>& momentum) {
+/// The filter, coarse particles that slip through the film, and those added and taken change a region's momentum by a
+/// few millionths of m c. The uniform velocity along the normals that has it is added.
+void MelpSolver::give_back_to_liquid(const std::vector<Vec3>& momentum) {
     std::vector<Vec3> velocity(coarse_.size());
     for (std::size_t i = 0; i < coarse_.size(); ++i) velocity[i] = velocity_of(i);
     const std::vector<Vec3> now = region_momenta(velocity);
     std::vector<Vec3> missing(gas_.size());
     for (std::size_t r = 0; r < gas_.size(); ++r)
-        if (even_[r].liquid_volume == 0.0 && !gas_[r].held && !gas_[r].burst) missing[r] = momentum[r] - now[r];
+        if (even_[r].liquid_volume == 0.0 && flies(r)) missing[r] = momentum[r] - now[r];
     add_uniform(missing, films_.liquid_volume);
 }
+
+/// How films fly that have no fine particles: as their motion along the normals says.
+std::vector<Vec3> MelpSolver::region_drifts_now() const {
+    std::vector<double> along_normal(coarse_.size());
+    for (std::size_t i = 0; i < coarse_.size(); ++i) along_normal[i] = dot(coarse_.velocity[i], geometry_.normal[i]);
+    return region_drifts(geometry_, coarse_, along_normal, gas_.size());
+}
+
+/// The same for these films, whose momentum is that of a flight at their drift.
+void MelpSolver::give_back_to_even_films(const std::vector<Vec3>& drift) {
+    std::vector<Vec3> missing = region_drifts_now();
+    for (std::size_t r = 0; r < gas_.size(); ++r)
+        missing[r] = even_[r].liquid_volume > 0.0 && flies(r) ? drift[r] - missing[r] : Vec3{};
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        const Vec3& n = geometry_.normal[i];
+        coarse_.velocity[i] += dot(missing[static_cast<std::size_t>(coarse_.region[i])], n) * n;
+    }
+}
+
+/// No rim holds its momentum, and no hole lets it go.
+bool MelpSolver::flies(std::size_t region) const { return !gas_[region].held && !gas_[region].burst; }
 
 /// Adds to each region the part along the normals of the uniform velocity U for which sum w n n^T U is what is missing.
 void MelpSolver::add_uniform(const std::vector<Vec3>& missing, std::span<const double> weight) {
@@ -71,19 +77,10 @@ void MelpSolver::add_uniform(const std::vector<Vec3>& missing, std::span<const d
     }
 }
 
-/// Films that stretch or shrink get or lose coarse particles. Their liquid, and so most of their momentum, is that of
-/// the fine ones; what is missing where they fly is given back with the rest. Films without fine particles get a
-/// uniform velocity along the normals, for their momentum is that of the particles.
+/// Films that stretch or shrink get or lose coarse particles. Their liquid is that of the fine ones, or of all; what
+/// momentum that costs is given back with the rest.
 void MelpSolver::keep_spacing() {
-    if (!options_.insertion) return;
-    const std::vector<Vec3> before = normal_flows(geometry_, coarse_, gas_.size());
-    if (!repopulate(coarse_, geometry_, gas_)) return;
-    update_shape();
-    const std::vector<Vec3> after = normal_flows(geometry_, coarse_, gas_.size());
-    std::vector<Vec3> missing(gas_.size());
-    for (std::size_t r = 0; r < gas_.size(); ++r)
-        if (even_[r].liquid_volume > 0.0 && !gas_[r].held) missing[r] = before[r] - after[r];
-    add_uniform(missing, geometry_.area);
+    if (options_.insertion && repopulate(coarse_, geometry_, gas_)) update_shape();
 }
 
 }  // namespace lamella::melp
