@@ -379,7 +379,7 @@ void MelpSolver::follow_contacts(double time) {
 }
 
 void MelpSolver::update_liquid() {
-    transfer_.emplace(coarse_, geometry_.normal, fine_, support_radius());
+    transfer_.emplace(coarse_, geometry_.normal, fine_, support_radius(), geometry_.images);
     films_ = films_of(geometry_, coarse_, transfer_->to_coarse(coarse_, fine_), even_, law_);
     // The thick edge of a hole is no film: surfactant that does not fit on it goes into its liquid.
     const double most = kMostOnEdges * law_.reference_concentration;
