@@ -2,7 +2,6 @@
 
 #include "lamella/linalg/dense.h"
 #include "lamella/solvers/melp/loops.h"
-#include "lamella/solvers/melp/surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,12 +26,10 @@ std::vector<std::size_t> clusters(const CoarseParticles& coarse, const Geometry&
         while (cluster[r] != r) r = cluster[r];
         return r;
     };
-    const Neighbors& other = geometry.neighbors.other;
-    for (std::size_t i = 0; i < coarse.size(); ++i)
-        for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
-            const std::size_t a = root(region_of(coarse, i)), b = root(region_of(coarse, other.index[k]));
-            cluster[std::max(a, b)] = std::min(a, b);
-        }
+    for (const auto& [p, q] : touching_regions(geometry.neighbors.other, coarse.region)) {
+        const std::size_t a = root(static_cast<std::size_t>(p)), b = root(static_cast<std::size_t>(q));
+        cluster[std::max(a, b)] = std::min(a, b);
+    }
     for (std::size_t& r : cluster) r = root(r);
     return cluster;
 }
@@ -180,7 +177,7 @@ std::vector<double> gas_areas(const CoarseParticles& coarse,
     std::vector<double> area(geometry.size()), share(geometry.size());
     for_each_particle(area.size(), [&](std::size_t i) {
         const Neighbors& other = geometry.neighbors.other;
-        area[i] = other.begin(i) == other.end(i) ? geometry.area[i] : cell_area(coarse, geometry, i);
+        area[i] = other.begin(i) == other.end(i) ? geometry.area[i] : geometry.star[i].cell_area;
         share[i] = area[i] * fold(geometry, i);
     });
     const std::vector<Vec3> nothing(area.size());

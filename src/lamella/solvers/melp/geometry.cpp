@@ -109,6 +109,7 @@ Geometry geometry_of(const CoarseParticles& coarse, double support_radius, std::
     g.curvature.resize(count);
     g.area.resize(count);
     g.gradient_map.resize(count);
+    g.star.resize(count);
     constexpr std::size_t kBlock = 256;
     parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
@@ -124,7 +125,10 @@ Geometry geometry_of(const CoarseParticles& coarse, double support_radius, std::
     });
     if (!g.images.empty()) g.mirrored_map.resize(count);
     parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
+        VoronoiCell cell;
         for (std::size_t i = first; i < last; ++i) {
+            if (g.neighbors.other.begin(i) != g.neighbors.other.end(i))
+                g.star[i] = star_of(coarse.position, g.normal, same, i, cell);
             g.gradient_map[i] = gradient_map(coarse.position, g.area, g.normal[i], same, nothing, i);
             if (!g.images.empty())
                 g.mirrored_map[i] = gradient_map(coarse.position, g.area, g.normal[i], same, g.images, i);

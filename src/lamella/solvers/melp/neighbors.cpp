@@ -82,4 +82,33 @@ NeighborLists find_neighbors(std::span<const Vec3> position,
     return {joined(count, same, kernel), joined(count, other, kernel)};
 }
 
+std::vector<std::array<std::int32_t, 2>> touching_regions(const Neighbors& other,
+                                                          std::span<const std::int32_t> region) {
+    using Pair = std::array<std::int32_t, 2>;
+    constexpr std::size_t kBlock = 1024;
+    std::vector<std::vector<Pair>> found((other.size() + kBlock - 1) / kBlock);
+    const auto tidy = [](std::vector<Pair>& pairs) {
+        std::sort(pairs.begin(), pairs.end());
+        pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    };
+    const std::int32_t regions = region.empty() ? 0 : *std::max_element(region.begin(), region.end()) + 1;
+    parallel_blocks(other.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+        std::vector<Pair>& mine = found[begin / kBlock];
+        // The last region that each was noted with: particles of one mostly stand together.
+        std::vector<std::int32_t> noted(static_cast<std::size_t>(regions), -1);
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
+                const std::int32_t a = region[i], b = region[other.index[k]];
+                if (a > b || noted[static_cast<std::size_t>(b)] == a) continue;
+                noted[static_cast<std::size_t>(b)] = a;
+                mine.push_back({a, b});
+            }
+        tidy(mine);
+    });
+    std::vector<Pair> all;
+    for (const std::vector<Pair>& pairs : found) all.insert(all.end(), pairs.begin(), pairs.end());
+    tidy(all);
+    return all;
+}
+
 }  // namespace lamella::melp

@@ -3,6 +3,7 @@
 #include "lamella/core/vec.h"
 #include "lamella/solvers/melp/kernel.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,5 +35,8 @@ NeighborLists find_neighbors(std::span<const Vec3> position,
                              std::span<const Vec3> normal,
                              std::span<const std::int32_t> region,
                              double support_radius);
+
+/// Every two regions that have a pair in the list, ascending, the smaller one first.
+std::vector<std::array<std::int32_t, 2>> touching_regions(const Neighbors& other, std::span<const std::int32_t> region);
 
 }  // namespace lamella::melp

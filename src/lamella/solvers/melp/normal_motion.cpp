@@ -26,15 +26,6 @@ std::size_t region_of(const CoarseParticles& coarse, std::size_t i) {
     return static_cast<std::size_t>(coarse.region[i]);
 }
 
-/// Strengths of the pairs: c_ij, of one region and of two. [N/m]
-struct Pairs {
-    std::vector<double> own;    ///< tau_i per particle
-    std::vector<double> same;   ///< per entry of neighbors.same
-    std::vector<double> other;  ///< per entry of neighbors.other
-    std::vector<double> image;  ///< per entry of images
-    std::vector<double> push;   ///< per entry of neighbors.other: of the springs that keep films apart, along normals
-};
-
 /// What keeps films that fly at each other from passing through, as a spring along the normals of a pair: it is
 /// strained where particle i stands deeper in the other bubble than films may. Gas alone presses joined films a quarter
 /// of a spacing into each other; those that have not joined keep a spacing of air between them.
@@ -42,6 +33,16 @@ struct Spring {
     double stiffness = 0.0;  ///< force along n_i over the velocity along n_i, or along n_j, times the time [N/m]
     double force = 0.0;      ///< along n_i, into the own bubble [N]
 };
+
+/// Strengths of the pairs: c_ij, of one region and of two. [N/m]
+struct Pairs {
+    std::vector<double> own;    ///< tau_i per particle
+    std::vector<double> same;   ///< per entry of neighbors.same
+    std::vector<double> other;  ///< per entry of neighbors.other
+    std::vector<double> image;  ///< per entry of images
+    std::vector<Spring> push;   ///< per entry of neighbors.other: what keeps films apart
+};
+
 constexpr double kStiff = 36.0;  // of these springs and of walls, tension / support radius^2
 
 Spring spring_between(const NormalProblem& p, std::size_t i, std::size_t k) {
@@ -106,7 +107,7 @@ Pairs pair_strengths(const NormalProblem& p) {
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) pairs.same[k] = strength(same, k, pairs.own);
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
             pairs.other[k] = (p.joined.empty() ? 1.0 : p.joined[k]) * strength(other, k, toward);
-            pairs.push[k] = spring_between(p, i, k).stiffness;
+            pairs.push[k] = spring_between(p, i, k);
         }
         for (std::size_t k = images.begin(i); k < images.end(i); ++k) pairs.image[k] = strength(images, k, pairs.own);
     });
@@ -126,7 +127,7 @@ std::vector<double> forces(const NormalProblem& p, const Pairs& pairs, const std
         const Neighbors& other = g.neighbors.other;
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
             pull += pairs.other[k] * (x[other.index[k]] - x[i]);
-            if (pairs.push[k] > 0.0) push -= spring_between(p, i, k).force;
+            push -= pairs.push[k].force;
         }
         const Images& images = g.images;
         for (std::size_t k = images.begin(i); k < images.end(i); ++k) pull += pairs.image[k] * (images.place[k] - x[i]);
@@ -150,8 +151,8 @@ public:
             for (std::size_t k = same.begin(i); k < same.end(i); ++k)
                 sum -= pairs.same[k] * (free ? dot(n[i], n[same.index[k]]) : 1.0);
             for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
-                sum -= pairs.other[k] + pairs.push[k];
-                other_[k] = pairs.other[k] * dot(n[i], n[other.index[k]]) - pairs.push[k];
+                sum -= pairs.other[k] + pairs.push[k].stiffness;
+                other_[k] = pairs.other[k] * dot(n[i], n[other.index[k]]) - pairs.push[k].stiffness;
             }
             const Images& images = p.geometry.images;
             for (std::size_t k = images.begin(i); k < images.end(i); ++k)
