@@ -18,22 +18,6 @@ std::size_t region_of(const CoarseParticles& coarse, std::size_t i) {
     return static_cast<std::size_t>(coarse.region[i]);
 }
 
-/// For each region the smallest one of the cluster it belongs to by contact.
-std::vector<std::size_t> clusters(const CoarseParticles& coarse, const Geometry& geometry, std::size_t regions) {
-    std::vector<std::size_t> cluster(regions);
-    std::iota(cluster.begin(), cluster.end(), std::size_t{0});
-    const auto root = [&](std::size_t r) {
-        while (cluster[r] != r) r = cluster[r];
-        return r;
-    };
-    for (const auto& [p, q] : touching_regions(geometry.neighbors.other, coarse.region)) {
-        const std::size_t a = root(static_cast<std::size_t>(p)), b = root(static_cast<std::size_t>(q));
-        cluster[std::max(a, b)] = std::min(a, b);
-    }
-    for (std::size_t& r : cluster) r = root(r);
-    return cluster;
-}
-
 /// Directions of forces and moments.
 std::vector<Rigid> all_directions() {
     std::vector<Rigid> all(kRigid);
@@ -81,6 +65,21 @@ double fold(const Geometry& geometry, std::size_t i) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> clusters(const CoarseParticles& coarse, const Geometry& geometry, std::size_t regions) {
+    std::vector<std::size_t> cluster(regions);
+    std::iota(cluster.begin(), cluster.end(), std::size_t{0});
+    const auto root = [&](std::size_t r) {
+        while (cluster[r] != r) r = cluster[r];
+        return r;
+    };
+    for (const auto& [p, q] : touching_regions(geometry.neighbors.other, coarse.region)) {
+        const std::size_t a = root(static_cast<std::size_t>(p)), b = root(static_cast<std::size_t>(q));
+        cluster[std::max(a, b)] = std::min(a, b);
+    }
+    for (std::size_t& r : cluster) r = root(r);
+    return cluster;
+}
 
 FreeCluster::FreeCluster(const CoarseParticles& coarse,
                          const Geometry& geometry,
