@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/exchange.h"
 #include "lamella/solvers/melp/keep_inside.h"
 #include "lamella/solvers/melp/operators.h"
 #include "lamella/solvers/melp/redistribution.h"
@@ -122,6 +123,7 @@ sim::StepReport MelpSolver::advance(double time_limit) {
     follow_contacts(time_);
     update_liquid();
     give_back(momentum);
+    exchange_liquid(dt);
     follow_particle_volumes(dt);
     vent(dt);
     step_ = dt;
@@ -378,6 +380,11 @@ void MelpSolver::follow_contacts(double time) {
 
 void MelpSolver::update_liquid() {
     transfer_.emplace(coarse_, geometry_.normal, fine_, support_radius());
+    gather_liquid();
+}
+
+/// The films as the fine particles make them, with the weights that are there.
+void MelpSolver::gather_liquid() {
     films_ = films_of(geometry_, coarse_, transfer_->to_coarse(coarse_, fine_), even_, law_);
     // The thick edge of a hole is no film: surfactant that does not fit on it goes into its liquid.
     const double most = kMostOnEdges * law_.reference_concentration;
@@ -386,6 +393,27 @@ void MelpSolver::update_liquid() {
         films_.concentration[i] = std::min(films_.concentration[i], most);
         films_.tension[i] = law_.tension(films_.concentration[i]);
     }
+}
+
+/// Films of two bubbles that lie on each other even out.
+void MelpSolver::exchange_liquid(double dt) {
+    if (options_.exchange_rate == 0.0 || geometry_.neighbors.other.index.empty() || any_burst()) return;
+    std::vector<Vec3> velocity(coarse_.size());
+    for (std::size_t i = 0; i < coarse_.size(); ++i) velocity[i] = velocity_of(i);
+    Exchange gained = exchange_between(geometry_, films_, velocity, joined_, options_.exchange_rate, dt);
+    std::vector<Vec3> momentum = region_momenta(velocity);
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        momentum[static_cast<std::size_t>(coarse_.region[i])] += gained.momentum[i];
+        const double before = films_.liquid_volume[i], after = before + gained.liquid_volume[i];
+        const Vec3& n = geometry_.normal[i];
+        coarse_.velocity[i] += dot((before * velocity[i] + gained.momentum[i]) / after - velocity[i], n) * n;
+        gained.liquid_volume[i] /= before;
+        gained.momentum[i] = gained.momentum[i] / before;
+        if (gained.surfactant[i] != 0.0) gained.surfactant[i] /= films_.concentration[i] * geometry_.area[i];
+    }
+    transfer_->grow({gained.liquid_volume, gained.surfactant, gained.momentum}, fine_);
+    gather_liquid();
+    give_back(momentum);
 }
 
 /// Sums over particles know a volume to a thousandth only, which would be 100 Pa: gases go by what films sweep, and

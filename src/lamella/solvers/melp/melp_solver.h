@@ -99,6 +99,8 @@ private:
     void keep_coarse_inside();
     void update_shape();
     void update_liquid();
+    void gather_liquid();
+    void exchange_liquid(double dt);
     void give_back(const std::vector<Vec3>& momentum);
     void add_uniform(const std::vector<Vec3>& missing, std::span<const double> weight);
     void follow_particle_volumes(double dt);

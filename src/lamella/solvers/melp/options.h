@@ -31,9 +31,10 @@ struct StartOptions {
     template <class Visitor>
     void visit(Visitor&& option) {
         option("thickness_top", thickness_top, sim::at_least(0.0),
-               {"where a film is highest, linear in height down to thickness_bottom; 0: material.thickness", "length"});
-        option("thickness_bottom", thickness_bottom, sim::at_least(0.0),
-               {"where it is lowest; 0: material.thickness", "length"});
+               {"where a film is highest, linear in height down to thickness_bottom; 0: bubble.thickness, or the "
+                "material's",
+                "length"});
+        option("thickness_bottom", thickness_bottom, sim::at_least(0.0), {"where it is lowest; 0: likewise", "length"});
         option("surfactant", surfactant,
                sim::choices<StartSurfactant>(
                    {{"proportional", StartSurfactant::kProportional}, {"uniform", StartSurfactant::kUniform}}),
@@ -70,6 +71,7 @@ struct Options {
     double junction_correction = 0.17;
     bool joining = true;
     double joining_delay = 0.0;
+    double exchange_rate = 0.0;
     bool redistribution = true;
     bool insertion = true;
     double volume_rate = 20.0;
@@ -126,6 +128,11 @@ struct Options {
         option("joining_delay", joining_delay, sim::at_least(0.0),
                {"from the first contact until films begin to join; a fifth of it later they have", "time",
                 "[Deng22]: a threshold"});
+        option(
+            "exchange_rate", exchange_rate, sim::at_least(0.0),
+            {"at which the films of two bubbles that lie on each other even out: their liquid, its surfactant and its "
+             "momentum; 0: each keeps its own",
+             "1/time", "[Deng22]: a chance per step"});
         option("redistribution", redistribution, {"coarse particles are kept evenly spread"});
         option("insertion", insertion,
                {"films that stretch get coarse particles, those that shrink lose some: the spacing is kept", "-",

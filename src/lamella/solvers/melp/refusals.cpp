@@ -83,6 +83,8 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
             throw InputError("melp.rim: a plate under films is built for [[film]] with shape = \"hemisphere\" only");
         else if (options.start.mode_amplitude != 0.0 && options.rim != RimHold::kWetPlate)
             throw InputError("melp.start.mode_amplitude: films that are held by wires start at rest");
+    if (options.exchange_rate > 0.0 && options.fine_ratio == 0)
+        throw InputError("melp.fine_ratio = 0: films exchange liquid only where it is on fine particles");
     if (!films.tensions.empty()) throw InputError("melp: [[tension]] is not built yet; use solver equilibrium");
     refuse_unknown_solids(films, options);
     if (!films.vortices.empty()) throw InputError("melp: [[vortex]] is not built yet; use solver vortex_particle");

@@ -19,7 +19,8 @@ StartThickness::StartThickness(const film::Problem& films,
     up_ = up_ / norm(up_);
 }
 
-void StartThickness::begin(const std::vector<Vec3>& position) {
+void StartThickness::begin(const std::vector<Vec3>& position, double thickness) {
+    own_ = thickness > 0.0 ? thickness / thickness_ : 1.0;
     low_ = std::numeric_limits<double>::infinity();
     high_ = -low_;
     for (const Vec3& x : position) {
@@ -29,8 +30,8 @@ void StartThickness::begin(const std::vector<Vec3>& position) {
 }
 
 double StartThickness::at(const Vec3& x, const Vec3& arm) const {
-    const double top = options_.thickness_top > 0.0 ? options_.thickness_top / thickness_ : 1.0;
-    const double bottom = options_.thickness_bottom > 0.0 ? options_.thickness_bottom / thickness_ : 1.0;
+    const double top = options_.thickness_top > 0.0 ? options_.thickness_top / thickness_ : own_;
+    const double bottom = options_.thickness_bottom > 0.0 ? options_.thickness_bottom / thickness_ : own_;
     const double height = high_ > low_ ? (dot(up_, x) - low_) / (high_ - low_) : 0.5;
     const double noise =
         options_.thickness_noise * film::gradient_noise(arm / wave_length_, seed_, options_.noise_octaves);

@@ -271,6 +271,33 @@ void Transfer::to_fine(const CoarseValues& from, double rate, FineParticles& fin
     });
 }
 
+void Transfer::grow(const Growth& growth, FineParticles& fine) const {
+    constexpr std::size_t kSums = 5;
+    parallel_blocks(chunks_.size(), 1, [&](std::size_t c, std::size_t) {
+        const Chunk& chunk = chunks_[c];
+        for (const Block& block : chunk.block) {
+            std::array<Lanes, kSums> sum{};
+            for (std::size_t row = 0; row < block.rows; ++row) {
+                const float* weight = &chunk.weight[(block.weights + row) * kLanes];
+                const std::uint32_t e = chunk.coarse[chunk.candidate[block.candidates + row]];
+                const Vec3 u = growth.momentum[e];
+                const std::array<double, kSums> gain{growth.liquid_volume[e], growth.surfactant[e], u[0], u[1], u[2]};
+                for (std::size_t q = 0; q < kSums; ++q)
+                    for (std::size_t l = 0; l < kLanes; ++l) sum[q][l] += static_cast<double>(weight[l]) * gain[q];
+            }
+            for (std::size_t l = 0; l < block.count; ++l) {
+                const std::size_t p = block.first + l;
+                const double scale = inverse_sum_[p], factor = 1.0 + scale * sum[0][l];
+                const Vec3 gained{{sum[2][l], sum[3][l], sum[4][l]}};
+                fine.liquid_volume[p] *= factor;
+                fine.thickness[p] *= factor;
+                fine.surfactant[p] *= 1.0 + scale * sum[1][l];
+                fine.velocity[p] = (fine.velocity[p] + scale * gained) / factor;
+            }
+        }
+    });
+}
+
 void Transfer::project(std::span<const Patch> patch, std::span<const Vec3> normal, FineParticles& fine) const {
     parallel_blocks(chunks_.size(), 1, [&](std::size_t c, std::size_t) {
         const Chunk& chunk = chunks_[c];

@@ -26,6 +26,13 @@ struct CoarseValues {
     std::span<const double> seen_thickness;  ///< the fine particles' own, averaged [m]
 };
 
+/// What coarse particles gain, over what they have gathered.
+struct Growth {
+    std::span<const double> liquid_volume;  ///< above -1 [-]
+    std::span<const double> surfactant;     ///< above -1 [-]
+    std::span<const Vec3> momentum;         ///< per gathered mass [m/s]
+};
+
 /// Weights between fine and coarse particles of one region:
 ///
 ///   w_LE = W(|x_L - x_E|) / alpha_L,   alpha_L = sum_E W(|x_L - x_E|),
@@ -58,6 +65,11 @@ public:
     ///   eta_L <- eta_L + rate (eta_E - seen eta_E).
     /// Fine particles that no coarse one reaches keep what they have.
     void to_fine(const CoarseValues& coarse, double rate, FineParticles& fine) const;
+
+    /// Fine particles grow as the film around them: liquid and surfactant of each, and how thick the film is seen
+    /// there, by the mean of what coarse ones gain over what they have gathered; momentum by what that liquid brings.
+    /// So all that coarse particles gain arrives, to rounding. Gradients of the velocity stay.
+    void grow(const Growth& growth, FineParticles& fine) const;
 
     /// Moves fine particles along the normals onto the patches, blended with the weights, and sets their normals.
     /// The patches may have moved on since the weights were found.
