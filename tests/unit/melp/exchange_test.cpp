@@ -35,6 +35,7 @@ Films even_films(const Geometry& geometry, const CoarseParticles& coarse, double
         films.thickness.push_back(coarse.region[i] == 0 ? first : second);
         films.liquid_volume.push_back(films.thickness[i] * geometry.area[i]);
         films.concentration.push_back(2.0 * films.thickness[i]);
+        films.temperature.push_back(coarse.region[i] == 0 ? 300.0 : 310.0);
     }
     films.dry.resize(coarse.size(), 0);
     return films;
@@ -53,7 +54,7 @@ TEST(Exchange, EvensTwoFilmsFaceToFaceOutAtItsRate) {
         std::vector<Vec3> momentum;  // of the two in the middle
         for (std::size_t i : {middle, facing}) momentum.push_back(films.thickness[i] * velocity[i]);
         std::vector<Vec3> now = velocity;
-        double total_gain = 0.0, soap_gain = 0.0;
+        double total_gain = 0.0, soap_gain = 0.0, heat_gain = 0.0;
         Vec3 pushed;
         for (int n = 0; n < steps; ++n) {
             const Exchange e = exchange_between(geometry, films, now, {}, kRate, kTime / steps);
@@ -62,7 +63,10 @@ TEST(Exchange, EvensTwoFilmsFaceToFaceOutAtItsRate) {
                 films.thickness[i] += e.liquid_volume[i] / geometry.area[i];
                 films.concentration[i] += e.surfactant[i] / geometry.area[i];
                 now[i] = (before * now[i] + e.momentum[i] / geometry.area[i]) / films.thickness[i];
+                films.temperature[i] =
+                    (before * films.temperature[i] + e.heat[i] / geometry.area[i]) / films.thickness[i];
                 total_gain += e.liquid_volume[i];
+                heat_gain += e.heat[i];
                 soap_gain += e.surfactant[i];
                 pushed += e.momentum[i];
             }
@@ -73,6 +77,10 @@ TEST(Exchange, EvensTwoFilmsFaceToFaceOutAtItsRate) {
         EXPECT_NEAR(films.concentration[middle] - films.concentration[facing], 2.0 * left * (kFirst - kSecond), 1e-12);
         const Vec3 difference = films.thickness[middle] * now[middle] - films.thickness[facing] * now[facing];
         EXPECT_LT(norm(difference - left * (momentum[0] - momentum[1])), 1e-12);
+        EXPECT_NEAR(
+            films.thickness[middle] * films.temperature[middle] - films.thickness[facing] * films.temperature[facing],
+            left * (kFirst * 300.0 - kSecond * 310.0), 1e-10);
+        EXPECT_LT(std::abs(heat_gain), 1e-10 * kFirst * kSide * kSide);
         EXPECT_LT(std::abs(total_gain), 1e-12 * kFirst * kSide * kSide);
         EXPECT_LT(std::abs(soap_gain), 1e-12 * kFirst * kSide * kSide);
         EXPECT_LT(norm(pushed), 1e-12 * kFirst * kSide * kSide);

@@ -31,8 +31,8 @@ Exchange exchange_between(const Geometry& g,
     const std::vector<double> gamma = facing_film(g);
     const auto has_none = [&](std::size_t i) { return films.dry[i] != 0 || films.concentration[i] <= 0.0; };
     const double share = -0.5 * std::expm1(-rate * dt);
-    Exchange gained{std::vector<double>(g.size(), 0.0), std::vector<double>(g.size(), 0.0),
-                    std::vector<Vec3>(g.size())};
+    Exchange gained{std::vector<double>(g.size(), 0.0), std::vector<double>(g.size(), 0.0), std::vector<Vec3>(g.size()),
+                    std::vector<double>(g.size(), 0.0)};
     parallel_for(g.size(), [&](std::size_t i) {
         if (has_none(i)) return;
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
@@ -43,6 +43,8 @@ Exchange exchange_between(const Geometry& g,
             gained.liquid_volume[i] += c * (films.thickness[j] - films.thickness[i]);
             gained.surfactant[i] += c * (films.concentration[j] - films.concentration[i]);
             gained.momentum[i] += c * (films.thickness[j] * velocity[j] - films.thickness[i] * velocity[i]);
+            gained.heat[i] +=
+                c * (films.thickness[j] * films.temperature[j] - films.thickness[i] * films.temperature[i]);
         }
     });
     return gained;

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/black_film.h"
 #include "lamella/solvers/melp/exchange.h"
 #include "lamella/solvers/melp/keep_inside.h"
 #include "lamella/solvers/melp/operators.h"
@@ -39,6 +40,9 @@ MelpSolver::MelpSolver(const Options& options, const sim::SolverInput& input) : 
             "material.surface_tension = {:.3g} N/m: where a film has twice the surfactant it would have no tension",
             film::elasticity(material), law_.reference_concentration, law_.reference_tension));
     refuse_unknown_films(*input_.films, options_);
+    const double weight = norm(material.gravity);
+    heat_ =
+        Heat(options_.heat, material.temperature, weight > 0.0 ? -material.gravity / weight : Vec3{{0.0, 0.0, 1.0}});
     contacts_ = Contacts({options_.joining, options_.joining_delay});
 }
 
@@ -174,14 +178,50 @@ double MelpSolver::shorter_step(double dt) const {
 
 /// Largest acceleration by gravity and surfactant now [m/s^2]: liquid at rest may have it all before it.
 double MelpSolver::strongest_pull() const {
-    const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, films_.concentration);
+    const std::vector<Vec3> pull = surfactant_pull(films_.pressing);
+    const std::vector<Vec3> beside = other_pull();
     double strongest = 0.0;
-    for (std::size_t i = 0; i < coarse_.size(); ++i) {
-        const double mass = liquid_density() * films_.thickness[i];
-        const Vec3 pull = input_.films->material.gravity - (2.0 * law_.thermal_energy() / mass) * slope[i];
-        strongest = std::max(strongest, norm(pull));
-    }
+    for (std::size_t i = 0; i < coarse_.size(); ++i)
+        strongest =
+            std::max(strongest, norm(weight_at(i) + (pull[i] + beside[i]) / (liquid_density() * films_.thickness[i])));
     return strongest;
+}
+
+/// Of the air that drags [m/s].
+Vec3 MelpSolver::wind_at(const Vec3& x) const {
+    const Vec3 arm = x - options_.wind_center;
+    const double square = options_.wind_radius * options_.wind_radius;
+    const double fade = square > 0.0 ? std::exp(-squared_norm(arm) / square) : 1.0;
+    return options_.wind + fade * cross(options_.wind_spin, arm);
+}
+
+/// Of the liquid, per mass [m/s^2].
+Vec3 MelpSolver::weight_at(std::size_t i) const {
+    return heat_.weight_factor(films_.temperature[i]) * input_.films->material.gravity;
+}
+
+/// What the slope of the surfactant on both interfaces pulls with along the film, per area [N/m^2].
+std::vector<Vec3> MelpSolver::surfactant_pull(std::span<const double> pressing) const {
+    std::vector<Vec3> pull = gradient(geometry_, coarse_.position, pressing);
+    for (Vec3& p : pull) p = (-2.0 * law_.thermal_energy()) * p;
+    return pull;
+}
+
+/// Likewise what else films pull themselves with: warm interfaces are less tense, borders of black film have a tension.
+std::vector<Vec3> MelpSolver::other_pull() const {
+    std::vector<Vec3> pull(coarse_.size());
+    if (heat_.on()) {
+        std::vector<double> extra;
+        for (const double t : films_.temperature) extra.push_back(2.0 * heat_.extra_tension(t));
+        pull = gradient(geometry_, coarse_.position, extra);
+    }
+    const BlackFilmOptions& black = options_.black_film;
+    if (black.thickness > 0.0 && black.line_tension > 0.0) {
+        const std::vector<double> chi = blackness(films_.thickness, black.thickness);
+        const std::vector<Vec3> line = line_pull(geometry_, coarse_.position, chi, black.line_tension);
+        for (std::size_t i = 0; i < pull.size(); ++i) pull[i] += line[i] / geometry_.area[i];
+    }
+    return pull;
 }
 
 /// Gravity, air and surfactant act along the film; what fine particles will take is in coarse_.velocity then. All see
@@ -193,20 +233,24 @@ SurfactantStep MelpSolver::push_along_film(double dt) {
         const Vec3& n = geometry_.normal[i];
         const double film = liquid_density() * films_.thickness[i], drag = dt * options_.air_drag;
         inertia[i] = film + drag;
-        Vec3 u = film * (films_.along[i] + dt * input_.films->material.gravity) + drag * options_.wind;
+        Vec3 u = film * (films_.along[i] + dt * weight_at(i)) + drag * wind_at(coarse_.position[i]);
         u -= dot(u, n) * n;
         coarse_.velocity[i] = u / inertia[i] + dot(coarse_.velocity[i], n) * n;
     }
     pull_edges(dt);
     marangoni_.assign(count, {});
     if (fine_.size() == 0) return {};  // constant tension
-    SurfactantStep step = solve_surfactant(geometry_, coarse_.position, films_, coarse_.velocity, law_, inertia, dt,
-                                           options_.solver_tolerance);
-    const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, step.concentration);
+    const std::vector<Vec3> beside = other_pull();
     for (std::size_t i = 0; i < count; ++i) {
-        const Vec3 pull = (-2.0 * law_.thermal_energy()) * slope[i];
-        marangoni_[i] = geometry_.area[i] * pull;
-        coarse_.velocity[i] += (dt / inertia[i]) * pull;
+        marangoni_[i] = geometry_.area[i] * beside[i];
+        coarse_.velocity[i] += (dt / inertia[i]) * beside[i];
+    }
+    SurfactantStep step = solve_surfactant(geometry_, coarse_.position, films_, coarse_.velocity, law_, inertia, dt,
+                                           options_.solver_tolerance, options_.jacobi_sweeps);
+    const std::vector<Vec3> pull = surfactant_pull(step.pressing);
+    for (std::size_t i = 0; i < count; ++i) {
+        marangoni_[i] += geometry_.area[i] * pull[i];
+        coarse_.velocity[i] += (dt / inertia[i]) * pull[i];
     }
     return step;
 }
@@ -230,8 +274,9 @@ NormalStep MelpSolver::push_along_normals(double dt) {
         const Vec3& n = geometry_.normal[i];
         before[i] = dot(coarse_.velocity[i], n);
         external[i] = (liquid_density() * films_.liquid_volume[i]) * input_.films->material.gravity;
-        if (dot(n, options_.wind) < 0.0)  // the side that the wind blows on
-            external[i] += (options_.air_drag * geometry_.area[i]) * (options_.wind - coarse_.velocity[i]);
+        const Vec3 wind = wind_at(coarse_.position[i]);
+        if (dot(n, wind) < 0.0)  // the side that the wind blows on
+            external[i] += (options_.air_drag * geometry_.area[i]) * (wind - coarse_.velocity[i]);
     }
     const std::vector<double> mass = masses();
     NormalStep step = move_along_normals({.coarse = coarse_,
@@ -342,6 +387,7 @@ void MelpSolver::move_fine(double dt) {
             fine_.thickness[p] *= std::exp(-dt * (slope[0][0] + slope[1][1] + slope[2][2]));
     });
     transfer_->project(geometry_.patch, geometry_.normal, fine_);
+    heat_.warm(dt, fine_);
     keep_inside({rims_now_, coarse_.position, coarse_.region, spacing_, 0.0}, fine_.region, fine_.normal,
                 fine_.position, fine_.velocity);
     constexpr std::int64_t kSortEvery = 32;
@@ -385,13 +431,14 @@ void MelpSolver::update_liquid() {
 
 /// The films as the fine particles make them, with the weights that are there.
 void MelpSolver::gather_liquid() {
-    films_ = films_of(geometry_, coarse_, transfer_->to_coarse(coarse_, fine_), even_, law_);
+    films_ = films_of(geometry_, coarse_, transfer_->to_coarse(coarse_, fine_), even_, law_, heat_);
     // The thick edge of a hole is no film: surfactant that does not fit on it goes into its liquid.
     const double most = kMostOnEdges * law_.reference_concentration;
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         if (!gas_[static_cast<std::size_t>(coarse_.region[i])].burst) continue;
         films_.concentration[i] = std::min(films_.concentration[i], most);
-        films_.tension[i] = law_.tension(films_.concentration[i]);
+        films_.pressing[i] = std::min(films_.pressing[i], most);
+        films_.tension[i] = law_.tension(films_.pressing[i]) + heat_.extra_tension(films_.temperature[i]);
     }
 }
 
@@ -409,9 +456,10 @@ void MelpSolver::exchange_liquid(double dt) {
         coarse_.velocity[i] += dot((before * velocity[i] + gained.momentum[i]) / after - velocity[i], n) * n;
         gained.liquid_volume[i] /= before;
         gained.momentum[i] = gained.momentum[i] / before;
+        gained.heat[i] /= before;
         if (gained.surfactant[i] != 0.0) gained.surfactant[i] /= films_.concentration[i] * geometry_.area[i];
     }
-    transfer_->grow({gained.liquid_volume, gained.surfactant, gained.momentum}, fine_);
+    transfer_->grow({gained.liquid_volume, gained.surfactant, gained.momentum, gained.heat}, fine_);
     gather_liquid();
     give_back(momentum);
 }

@@ -87,6 +87,7 @@ sim::Surface MelpSolver::surface() const {
     }
     surface.vertex_fields = {{"thickness", "m", 1, false, with_feet(films_.seen_thickness)},
                              {"surfactant_concentration", "mol/m^2", 1, false, with_feet(films_.concentration)},
+                             {"temperature", "K", 1, false, with_feet(films_.temperature)},
                              {"curvature", "1/m", 1, false, with_feet(geometry_.curvature)},
                              std::move(velocity),
                              std::move(on_wire)};

@@ -88,8 +88,9 @@ void append(Start& start,
     const double share = region.area / static_cast<double>(std::max(region.fine.position.size(), std::size_t{1}));
     thickness.begin(region.fine.position, region.thickness);
     for (const Vec3& x : region.fine.position) {
-        const double thick = thickness.at(x, x - center);
-        const double soap = options.start.surfactant == StartSurfactant::kUniform ? 1.0 : thick;
+        const double whole = thickness.at(x, x - center);
+        const double soap = options.start.surfactant == StartSurfactant::kUniform ? 1.0 : whole;
+        const double thick = thickness.in_spot(x) ? options.start.spot_thickness / material.thickness : whole;
         start.fine.liquid_volume.push_back(thick * material.thickness * share);
         start.fine.surfactant.push_back(soap * film::start_surfactant(material) * share);
         start.fine.thickness.push_back(thick * material.thickness);
@@ -106,6 +107,7 @@ void append(Start& start,
     add(start.fine.normal, region.fine.normal);
     start.fine.velocity.resize(start.fine.position.size(), region.velocity);
     start.fine.gradient.resize(start.fine.position.size());
+    start.fine.temperature.resize(start.fine.position.size(), material.temperature);
     start.fine.region.resize(start.fine.position.size(), here);
 
     Gas gas{.region = number,

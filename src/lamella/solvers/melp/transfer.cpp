@@ -120,8 +120,8 @@ void Transfer::find(Chunk& chunk,
 
 Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles& fine) const {
     // What a fine particle gives, all times its weight: volume, surfactant, seen volume, momentum at the chunk's origin
-    // and its gradient (9), and one spare to fill two rows of eight.
-    constexpr std::size_t kGiven = 16, kKept = 6;
+    // and its gradient (9), and heat: two rows of eight.
+    constexpr std::size_t kGiven = 16, kKept = 7;
     std::vector<std::vector<double>> received(chunks_.size());  // kKept per coarse particle of the chunk
     parallel_blocks(chunks_.size(), 1, [&](std::size_t c, std::size_t) {
         const Chunk& chunk = chunks_[c];
@@ -138,6 +138,7 @@ Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles&
                     given[l][3 + k] = v * at_origin[k];
                     for (std::size_t m = 0; m < 3; ++m) given[l][6 + 3 * k + m] = v * fine.gradient[p][k][m];
                 }
+                given[l][15] = v * fine.temperature[p];
             }
             for (std::size_t row = 0; row < block.rows; ++row) {
                 const float* weight = &chunk.weight[(block.weights + row) * kLanes];
@@ -157,6 +158,7 @@ Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles&
             for (std::size_t q = 0; q < 3; ++q)
                 to[3 + q] =
                     sum[k][3 + q] + sum[k][6 + 3 * q] * d[0] + sum[k][7 + 3 * q] * d[1] + sum[k][8 + 3 * q] * d[2];
+            to[6] = sum[k][15];
         }
     });
 
@@ -165,6 +167,7 @@ Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles&
     gathered.surfactant.resize(coarse.size());
     gathered.seen_volume.resize(coarse.size());
     gathered.momentum.resize(coarse.size());
+    gathered.heat.resize(coarse.size());
     parallel_for(coarse.size(), [&](std::size_t e) {
         std::array<double, kKept> sum{};
         for (std::size_t k = places_start_[e]; k < places_start_[e + 1]; ++k)
@@ -173,6 +176,7 @@ Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles&
         gathered.surfactant[e] = sum[1];
         gathered.seen_volume[e] = sum[2];
         gathered.momentum[e] = {{sum[3], sum[4], sum[5]}};
+        gathered.heat[e] = sum[6];
     });
     return gathered;
 }
@@ -272,7 +276,7 @@ void Transfer::to_fine(const CoarseValues& from, double rate, FineParticles& fin
 }
 
 void Transfer::grow(const Growth& growth, FineParticles& fine) const {
-    constexpr std::size_t kSums = 5;
+    constexpr std::size_t kSums = 6;
     parallel_blocks(chunks_.size(), 1, [&](std::size_t c, std::size_t) {
         const Chunk& chunk = chunks_[c];
         for (const Block& block : chunk.block) {
@@ -281,7 +285,8 @@ void Transfer::grow(const Growth& growth, FineParticles& fine) const {
                 const float* weight = &chunk.weight[(block.weights + row) * kLanes];
                 const std::uint32_t e = chunk.coarse[chunk.candidate[block.candidates + row]];
                 const Vec3 u = growth.momentum[e];
-                const std::array<double, kSums> gain{growth.liquid_volume[e], growth.surfactant[e], u[0], u[1], u[2]};
+                const std::array<double, kSums> gain{growth.liquid_volume[e], growth.surfactant[e], u[0], u[1], u[2],
+                                                     growth.heat[e]};
                 for (std::size_t q = 0; q < kSums; ++q)
                     for (std::size_t l = 0; l < kLanes; ++l) sum[q][l] += static_cast<double>(weight[l]) * gain[q];
             }
@@ -293,6 +298,7 @@ void Transfer::grow(const Growth& growth, FineParticles& fine) const {
                 fine.thickness[p] *= factor;
                 fine.surfactant[p] *= 1.0 + scale * sum[1][l];
                 fine.velocity[p] = (fine.velocity[p] + scale * gained) / factor;
+                fine.temperature[p] = (fine.temperature[p] + scale * sum[5][l]) / factor;
             }
         }
     });
