@@ -80,6 +80,8 @@ double-bubble-of-particles|melp/double-bubble-small|last|--environment window|Tw
 film-drainage|melp/film-drainage-small|10||An upright film in a frame drains
 fingers-of-particles|melp/rayleigh-taylor-small|14||Thick film above thin film, made of particles, sinks in fingers
 deforming-rectangle|melp/deforming-rectangle-small|24||The upper side of a frame swings to the front, and the film with it
+black-spots|melp/black-spots-small|12||Black spots rise in a film whose frame swings out
+stirred-film|melp/stirred-film-small|10|--camera -90,58,1.33|A whirl of air has stirred a film
 half-bubble|melp/half-bubble-small|10||Half a bubble on a plate, in the wind
 ball-on-a-film|melp/ball-on-film-small|5||A ball has fallen on a film, which catches it
 stick-of-particles|melp/stick-small|18|--camera -60,35 --exposure 2|A stick was dragged through a film that is thicker above
@@ -87,6 +89,7 @@ bursting-disk|melp/burst-disk-small|7||A film in a ring was pricked: the hole's 
 bursting-giant|melp/giant-bubble-small|4||A giant bubble, pricked from the right, a few milliseconds later
 four-bubbles|melp/four-bubbles-small|10|--exposure 0.8|Four bubbles have flown together
 thirteen-bubbles|melp/thirteen-bubbles-small|6|--exposure 0.6|Twelve bubbles have flown at one in their middle
+rt-double-bubble|melp/rt-double-bubble-small|4|--environment window|Heavy liquid sinks through the film between two bubbles
 foam-mountain|melp/foam-mountain-small|12||Bubbles pour from above, pile up on a plate and pop one after the other
 catenoid|equilibrium/catenoid-0.8-small|last||The catenoid between two rings
 catenoid-0.4|equilibrium/catenoid-0.4-small|last||The same between rings that are near

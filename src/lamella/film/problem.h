@@ -98,6 +98,7 @@ struct Problem {
     std::vector<Wire> wires;                               ///< those that move
     IdVector<mesh::VertexId, std::int32_t> wire_of;        ///< which of them holds a vertex; -1: none, or it is at rest
     IdVector<mesh::RegionId, Vec3> velocity;               ///< of each bubble at the start [m/s]
+    IdVector<mesh::RegionId, double> thickness;            ///< of each bubble's film; 0: the material's [m]
     std::vector<Event> events;  ///< in order of time
     std::vector<Vortex> vortices;
     std::vector<Solid> solids;

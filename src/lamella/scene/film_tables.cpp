@@ -238,6 +238,14 @@ IdVector<mesh::RegionId, Vec3> start_velocities(const FilmTables& tables, const 
     return velocity;
 }
 
+/// Likewise of their films' thickness.
+IdVector<mesh::RegionId, double> start_thickness(const FilmTables& tables, const FoamMesh& mesh) {
+    IdVector<mesh::RegionId, double> thickness(mesh.regions.size());
+    for (std::size_t k = 0; k < tables.bubbles.size(); ++k)
+        thickness[static_cast<mesh::RegionId>(k + 1)] = tables.bubbles[k].thickness;
+    return thickness;
+}
+
 /// Those of films that are about to be added: their regions will follow those that are there.
 void add_tensions(film::Problem& problem, const std::vector<io::PairTension>& tensions) {
     const std::size_t before = problem.mesh.regions.size() - 1;
@@ -335,6 +343,7 @@ film::Problem film_problem(const FilmTables& tables, const sim::Node& root, std:
         mesh::require_sound(problem.mesh, root.where.file.empty() ? "the films" : root.where.file);
     detail::add_releases(problem, tables, root, seed);
     problem.velocity = start_velocities(tables, problem.mesh);
+    problem.thickness = start_thickness(tables, problem.mesh);
 
     for (std::size_t k = 0; k < tables.tensions.size(); ++k) {
         const TensionTable& t = tables.tensions[k];

@@ -53,6 +53,7 @@ struct BubbleTable {
     double radius = 0.0;
     double volume = 0.0;
     Vec3 velocity;
+    double thickness = 0.0;
 
     template <class Visitor>
     void visit(Visitor&& option) {
@@ -60,6 +61,8 @@ struct BubbleTable {
         option("radius", radius, sim::at_least(0.0), {"of the ball; this or volume", "length"});
         option("volume", volume, sim::at_least(0.0), {"of its gas; this or radius", "length^3"});
         option("velocity", velocity, sim::any_number(), {"at the start, for the solvers that move", "length/time"});
+        option("thickness", thickness, sim::at_least(0.0),
+               {"of its film at the start, on the mean, for solver melp; 0: material.thickness", "length"});
     }
 };
 

@@ -160,8 +160,7 @@ sim::Node resolved_options(const Scene& scene, const sim::SolverEntry& solver) {
             rest.remove_prefix(std::min(dot + 1, rest.size()));
         }
         auto* text = node != nullptr ? std::get_if<std::string>(&node->value) : nullptr;
-        if (text != nullptr && !text->empty())
-            *text = absolute_path(scene, *text).string();
+        if (text != nullptr && !text->empty()) *text = absolute_path(scene, *text).string();
     }
     return options;
 }
@@ -223,8 +222,11 @@ Scene parse_scene(std::string_view text,
     check_output_count(scene, "frame_rate", scene.time.frame_rate);
     check_output_count(scene, "series_rate", scene.time.series_rate);
     if (solver.films)
-        scene.films = std::make_shared<film::Problem>(
-            film_problem(read_film_tables(scene.root), scene.root, scene.seed));
+        scene.films =
+            std::make_shared<film::Problem>(film_problem(read_film_tables(scene.root), scene.root, scene.seed));
+    if (solver.films && !solver.bubble_thickness &&
+        std::any_of(scene.films->thickness.begin(), scene.films->thickness.end(), [](double t) { return t > 0.0; }))
+        scene.notes.push_back(fmt::format("bubble.thickness is not used by solver {}", solver.name));
     create_solver(scene, registry);
     return scene;
 }

@@ -52,6 +52,7 @@ struct SolverEntry {
     bool processes = false;  ///< several processes can compute one run; Solver says how its functions then work
     bool vortices = false;  ///< uses [[vortex]]
     bool solids = false;    ///< uses [[solid]]
+    bool bubble_thickness = false;  ///< uses bubble.thickness
     std::function<std::unique_ptr<Solver>(const SolverInput&)> create;  ///< checks the options, does no work
     std::function<std::vector<OptionInfo>()> describe;
     std::function<Node(const Node& options)> resolve;  ///< the options with every default filled in

@@ -33,6 +33,12 @@ inline std::unique_ptr<MelpSolver> solver_of(const std::string& tables,
     return std::unique_ptr<MelpSolver>(dynamic_cast<MelpSolver*>(solver.release()));
 }
 
+inline std::unique_ptr<MelpSolver> started(const std::string& tables) {
+    auto solver = solver_of(tables);
+    solver->start({});
+    return solver;
+}
+
 /// Films of tension kTension and mass kFilmMass, 500 nm thick, started.
 /// @param shape     tables [[bubble]], [[film]] and others   @param options  lines of [melp]
 /// @param material  more lines of [material]

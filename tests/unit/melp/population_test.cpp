@@ -2,11 +2,10 @@
 
 #include "lamella/solvers/melp/population.h"
 
-#include "lamella/core/parallel.h"
-
 #include <gtest/gtest.h>
 
 #include "bubbles.h"
+#include "same_bits.h"
 #include <algorithm>
 
 namespace lamella::melp {
@@ -97,28 +96,7 @@ TEST(Population, FillsABubbleUpThatFlies) {
 }
 
 TEST(Population, GivesTheSameBitsOnAnyNumberOfThreadsAndAfterAResume) {
-    constexpr int kSteps = 120;
-    std::vector<test::StateMemory> states;
-    std::size_t before = 0;
-    for (const int threads : {1, 2}) {
-        const ThreadLimit limit(threads);
-        auto solver = drawn_film("0.03", "0.6", "fine_ratio = 4\n");
-        before = solver->coarse().size();
-        advance(*solver, kSteps);
-        EXPECT_GT(solver->coarse().size(), before);
-        states.push_back(state_of(*solver));
-    }
-    auto first = drawn_film("0.03", "0.6", "fine_ratio = 4\n");
-    advance(*first, 77);
-    test::StateMemory memory = state_of(*first);
-    auto second = drawn_film("0.03", "0.6", "fine_ratio = 4\n");
-    second->load(memory);
-    advance(*second, kSteps - 77);
-    states.push_back(state_of(*second));
-    for (std::size_t k : {1, 2}) {
-        EXPECT_EQ(states[0].reals, states[k].reals) << k;
-        EXPECT_EQ(states[0].integers, states[k].integers) << k;
-    }
+    expect_same_bits([] { return drawn_film("0.03", "0.6", "fine_ratio = 4\n"); }, 120, 77);
 }
 
 }  // namespace

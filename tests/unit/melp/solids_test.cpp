@@ -3,12 +3,12 @@
 #include "lamella/solvers/melp/solids.h"
 
 #include "lamella/core/error.h"
-#include "lamella/core/parallel.h"
 #include "lamella/solvers/melp/surface.h"
 
 #include <gtest/gtest.h>
 
 #include "bubbles.h"
+#include "same_bits.h"
 #include <limits>
 
 namespace lamella::melp {
@@ -68,27 +68,7 @@ TEST(Solids, AreEnteredByNoParticle) {
 }
 
 TEST(Solids, GiveTheSameBitsOnAnyNumberOfThreadsAndAfterAResume) {
-    constexpr int kSteps = 60;
-    std::vector<test::StateMemory> states;
-    for (const int threads : {1, 2}) {
-        const ThreadLimit limit(threads);
-        auto solver = solver_of(kStirred);
-        solver->start({});
-        advance(*solver, kSteps);
-        states.push_back(state_of(*solver));
-    }
-    auto first = solver_of(kStirred);
-    first->start({});
-    advance(*first, 37);
-    test::StateMemory memory = state_of(*first);
-    auto second = solver_of(kStirred);
-    second->load(memory);
-    advance(*second, kSteps - 37);
-    states.push_back(state_of(*second));
-    for (std::size_t k : {1, 2}) {
-        EXPECT_EQ(states[0].reals, states[k].reals) << k;
-        EXPECT_EQ(states[0].integers, states[k].integers) << k;
-    }
+    expect_same_bits([] { return started(kStirred); }, 60, 37);
 }
 
 /// A heavy ball falls through its film, which closes behind it.

@@ -76,6 +76,7 @@ TEST(Transfer, KeepsTheAngularMomentumOfAFlatFilmThatTurns) {
     fine.liquid_volume.resize(fine.size(), 1.0);
     fine.surfactant.resize(fine.size(), 1.0);
     fine.thickness.resize(fine.size(), 1.0);
+    fine.temperature.resize(fine.size(), 300.0);
     sort_fine_particles(fine, 1.0);
     const std::vector<Vec3> normal(coarse.size(), {{0, 0, 1}});
     const Vec3 center{{15, 15, 0}}, spin{{0, 0, 2}};

@@ -23,6 +23,7 @@ std::vector<double> region_areas(const Geometry& geometry, const CoarseParticles
 
 std::vector<Vec3> region_drifts(const Geometry& geometry,
                                 const CoarseParticles& coarse,
+                                std::span<const double> mass,
                                 std::span<const double> along_normal,
                                 std::size_t regions) {
     std::vector<std::array<double, 9>> matrix(regions);
@@ -31,8 +32,8 @@ std::vector<Vec3> region_drifts(const Geometry& geometry,
         const auto r = static_cast<std::size_t>(coarse.region[e]);
         const Vec3& n = geometry.normal[e];
         for (std::size_t k = 0; k < 3; ++k) {
-            right[r][k] += geometry.area[e] * along_normal[e] * n[k];
-            for (std::size_t m = 0; m < 3; ++m) matrix[r][3 * k + m] += geometry.area[e] * n[k] * n[m];
+            right[r][k] += mass[e] * along_normal[e] * n[k];
+            for (std::size_t m = 0; m < 3; ++m) matrix[r][3 * k + m] += mass[e] * n[k] * n[m];
         }
     }
     std::vector<Vec3> drift(regions);
@@ -45,7 +46,8 @@ Films films_of(const Geometry& geometry,
                const CoarseParticles& coarse,
                const Gathered& gathered,
                const std::vector<EvenFilm>& even,
-               const film::SurfactantLaw& law) {
+               const film::SurfactantLaw& law,
+               const Heat& heat) {
     const std::size_t count = coarse.size();
     const std::vector<double> area = region_areas(geometry, coarse, even.size());
     std::vector<double> liquid(even.size(), 0.0);
@@ -53,7 +55,7 @@ Films films_of(const Geometry& geometry,
         liquid[static_cast<std::size_t>(coarse.region[e])] += gathered.liquid_volume[e];
     std::vector<double> along_normal(count);
     for (std::size_t e = 0; e < count; ++e) along_normal[e] = dot(coarse.velocity[e], geometry.normal[e]);
-    std::vector<Vec3> drift = region_drifts(geometry, coarse, along_normal, even.size());
+    std::vector<Vec3> drift = region_drifts(geometry, coarse, geometry.area, along_normal, even.size());
     for (std::size_t r = 0; r < even.size(); ++r)
         if (even[r].held) drift[r] = {};
     Films films;
@@ -62,6 +64,8 @@ Films films_of(const Geometry& geometry,
     films.thickness.resize(count);
     films.seen_thickness.resize(count);
     films.concentration.resize(count);
+    films.temperature.resize(count);
+    films.pressing.resize(count);
     films.tension.resize(count);
     films.along.resize(count);
     for (std::size_t e = 0; e < count; ++e) {
@@ -75,7 +79,10 @@ Films films_of(const Geometry& geometry,
         films.liquid_volume[e] = std::max(volume, thinnest * a);
         films.thickness[e] = films.liquid_volume[e] / a;
         films.concentration[e] = (evenly ? share * even[r].surfactant : gathered.surfactant[e]) / a;
-        films.tension[e] = evenly ? law.reference_tension : law.tension(films.concentration[e]);
+        films.temperature[e] = !evenly && volume > 0.0 ? gathered.heat[e] / volume : law.temperature;
+        films.pressing[e] = films.concentration[e] * heat.pressure_factor(films.temperature[e]);
+        films.tension[e] =
+            evenly ? law.reference_tension : law.tension(films.pressing[e]) + heat.extra_tension(films.temperature[e]);
         films.seen_thickness[e] = volume > 0.0 && !evenly ? gathered.seen_volume[e] / volume : films.thickness[e];
         Vec3 u;
         if (evenly)

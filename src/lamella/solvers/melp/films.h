@@ -2,6 +2,7 @@
 
 #include "lamella/film/surfactant.h"
 #include "lamella/solvers/melp/geometry.h"
+#include "lamella/solvers/melp/heat.h"
 #include "lamella/solvers/melp/transfer.h"
 
 #include <cstdint>
@@ -23,18 +24,22 @@ struct Films {
     std::vector<double> thickness;       ///< [m]
     std::vector<double> seen_thickness;  ///< the fine particles' own, averaged [m]
     std::vector<double> concentration;   ///< of surfactant, per interface [mol/m^2]
-    std::vector<double> tension;         ///< of one interface [N/m]
-    std::vector<Vec3> along;             ///< velocity along the film [m/s]
-    std::vector<std::uint8_t> dry;       ///< 1: hardly a fine particle reaches it
+    std::vector<double> temperature;     ///< [K]
+    std::vector<double> pressing;   ///< the concentration that would press as hard at the law's temperature [mol/m^2]
+    std::vector<double> tension;    ///< of one interface [N/m]
+    std::vector<Vec3> along;        ///< velocity along the film [m/s]
+    std::vector<std::uint8_t> dry;  ///< 1: hardly a fine particle reaches it
 
     std::size_t size() const { return thickness.size(); }
 };
 
 /// The uniform velocity of each region that has the momentum of its motion along the normals [m/s]: the U for which
-/// sum a (u . n) n = (sum a n n^T) U. Films without a flow of their own fly with it.
+/// sum m (u . n) n = (sum m n n^T) U. Films without a flow of their own fly with it.
+/// @param mass          per coarse particle, in any unit
 /// @param along_normal  u . n per coarse particle [m/s]
 std::vector<Vec3> region_drifts(const Geometry& geometry,
                                 const CoarseParticles& coarse,
+                                std::span<const double> mass,
                                 std::span<const double> along_normal,
                                 std::size_t regions);
 
@@ -43,6 +48,7 @@ Films films_of(const Geometry& geometry,
                const CoarseParticles& coarse,
                const Gathered& gathered,
                const std::vector<EvenFilm>& even,
-               const film::SurfactantLaw& law);
+               const film::SurfactantLaw& law,
+               const Heat& heat);
 
 }  // namespace lamella::melp

@@ -2,6 +2,8 @@
 
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/black_film.h"
+#include "lamella/solvers/melp/exchange.h"
 #include "lamella/solvers/melp/keep_inside.h"
 #include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/operators.h"
@@ -16,7 +18,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -39,6 +40,9 @@ MelpSolver::MelpSolver(const Options& options, const sim::SolverInput& input) : 
             "material.surface_tension = {:.3g} N/m: where a film has twice the surfactant it would have no tension",
             film::elasticity(material), law_.reference_concentration, law_.reference_tension));
     refuse_unknown_films(*input_.films, options_);
+    const double weight = norm(material.gravity);
+    heat_ =
+        Heat(options_.heat, material.temperature, weight > 0.0 ? -material.gravity / weight : Vec3{{0.0, 0.0, 1.0}});
     contacts_ = Contacts({options_.joining, options_.joining_delay});
 }
 
@@ -124,6 +128,7 @@ sim::StepReport MelpSolver::advance(double time_limit) {
     give_back_to_even_films(drift);
     update_liquid();
     give_back_to_liquid(momentum);
+    exchange_liquid(dt);
     follow_particle_volumes(dt);
     vent(dt);
     step_ = dt;
@@ -138,50 +143,41 @@ sim::StepReport MelpSolver::advance(double time_limit) {
             .residual = std::max(surfactant.solution.residual, normal.solution.residual)};
 }
 
-/// Particles move by less than cfl spacings, and swings and falls are resolved.
-double MelpSolver::choose_step(double time_limit) const {
-    double fastest = fastest_edge();
-    for (const Vec3& u : coarse_.velocity) fastest = std::max(fastest, norm(u));
-    for (const Vec3& u : fine_.velocity) fastest = std::max(fastest, norm(u));
-    fastest = std::max({fastest, rims_.fastest(), film::fastest(input_.films->solids)});
-    for (const film::Body& body : bodies_)
-        if (body.free) fastest = std::max(fastest, norm(body.velocity));
-    const double farthest = options_.cfl * spacing_, pull = strongest_pull();
-    double dt = options_.largest_step > 0.0 ? options_.largest_step : std::numeric_limits<double>::infinity();
-    if (fastest > 0.0) dt = std::min(dt, farthest / fastest);
-    if (pull > 0.0) dt = std::min(dt, std::sqrt(2.0 * farthest / pull));
-    for (const film::Body& body : bodies_) {
-        constexpr double kOfSwing =
-            0.2;  // of the time that a solid needs at least for a radian of swinging on its film
-        const double tension = input_.films->material.film_tension();
-        if (body.free) dt = std::min(dt, kOfSwing * std::sqrt(body.mass / (2.0 * std::numbers::pi * tension)));
-    }
-    if (options_.steps_per_period > 0.0) dt = std::min(dt, slowest_period(gas_) / options_.steps_per_period);
-    const double left = time_limit - time_;
-    if (left <= dt) return left;
-    return left < 2.0 * dt ? 0.5 * left : dt;  // no crumb of a step before an output
+/// Of the air that drags [m/s].
+Vec3 MelpSolver::wind_at(const Vec3& x) const {
+    const Vec3 arm = x - options_.wind_center;
+    const double square = options_.wind_radius * options_.wind_radius;
+    const double fade = square > 0.0 ? std::exp(-squared_norm(arm) / square) : 1.0;
+    return options_.wind + fade * cross(options_.wind_spin, arm);
 }
 
-/// A step in which films have come to move as far as planned: tension that nothing balances, where films have just
-/// joined or burst, shows only in the velocities after it. The same step where they do not move much farther already.
-double MelpSolver::shorter_step(double dt) const {
-    constexpr double kMuchFarther = 2.0, kShortest = 0.2;
-    double fastest = 0.0;
-    for (const Vec3& u : coarse_.velocity) fastest = std::max(fastest, norm(u));
-    const double planned = options_.cfl * spacing_;
-    return fastest * dt <= kMuchFarther * planned ? dt : dt * std::max(planned / (fastest * dt), kShortest);
+/// Of the liquid, per mass [m/s^2].
+Vec3 MelpSolver::weight_at(std::size_t i) const {
+    return heat_.weight_factor(films_.temperature[i]) * input_.films->material.gravity;
 }
 
-/// Largest acceleration by gravity and surfactant now [m/s^2]: liquid at rest may have it all before it.
-double MelpSolver::strongest_pull() const {
-    const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, films_.concentration);
-    double strongest = 0.0;
-    for (std::size_t i = 0; i < coarse_.size(); ++i) {
-        const double mass = liquid_density() * films_.thickness[i];
-        const Vec3 pull = input_.films->material.gravity - (2.0 * law_.thermal_energy() / mass) * slope[i];
-        strongest = std::max(strongest, norm(pull));
+/// What the slope of the surfactant on both interfaces pulls with along the film, per area [N/m^2].
+std::vector<Vec3> MelpSolver::surfactant_pull(std::span<const double> pressing) const {
+    std::vector<Vec3> pull = gradient(geometry_, coarse_.position, pressing);
+    for (Vec3& p : pull) p = (-2.0 * law_.thermal_energy()) * p;
+    return pull;
+}
+
+/// Likewise what else films pull themselves with: warm interfaces are less tense, borders of black film have a tension.
+std::vector<Vec3> MelpSolver::other_pull() const {
+    std::vector<Vec3> pull(coarse_.size());
+    if (heat_.on()) {
+        std::vector<double> extra;
+        for (const double t : films_.temperature) extra.push_back(2.0 * heat_.extra_tension(t));
+        pull = gradient(geometry_, coarse_.position, extra);
     }
-    return strongest;
+    const BlackFilmOptions& black = options_.black_film;
+    if (black.thickness > 0.0 && black.line_tension > 0.0) {
+        const std::vector<double> chi = blackness(films_.thickness, black.thickness);
+        const std::vector<Vec3> line = line_pull(geometry_, coarse_.position, chi, black.line_tension);
+        for (std::size_t i = 0; i < pull.size(); ++i) pull[i] += line[i] / geometry_.area[i];
+    }
+    return pull;
 }
 
 /// Gravity, air and surfactant act along the film; what fine particles will take is in coarse_.velocity then. All see
@@ -193,20 +189,24 @@ SurfactantStep MelpSolver::push_along_film(double dt) {
         const Vec3& n = geometry_.normal[i];
         const double film = liquid_density() * films_.thickness[i], drag = dt * options_.air_drag;
         inertia[i] = film + drag;
-        Vec3 u = film * (films_.along[i] + dt * input_.films->material.gravity) + drag * options_.wind;
+        Vec3 u = film * (films_.along[i] + dt * weight_at(i)) + drag * wind_at(coarse_.position[i]);
         u -= dot(u, n) * n;
         coarse_.velocity[i] = u / inertia[i] + dot(coarse_.velocity[i], n) * n;
     }
     pull_edges(dt);
     marangoni_.assign(count, {});
     if (fine_.size() == 0) return {};  // constant tension
-    SurfactantStep step = solve_surfactant(geometry_, coarse_.position, films_, coarse_.velocity, law_, inertia, dt,
-                                           options_.solver_tolerance);
-    const std::vector<Vec3> slope = gradient(geometry_, coarse_.position, step.concentration);
+    const std::vector<Vec3> beside = other_pull();
     for (std::size_t i = 0; i < count; ++i) {
-        const Vec3 pull = (-2.0 * law_.thermal_energy()) * slope[i];
-        marangoni_[i] = geometry_.area[i] * pull;
-        coarse_.velocity[i] += (dt / inertia[i]) * pull;
+        marangoni_[i] = geometry_.area[i] * beside[i];
+        coarse_.velocity[i] += (dt / inertia[i]) * beside[i];
+    }
+    SurfactantStep step = solve_surfactant(geometry_, coarse_.position, films_, coarse_.velocity, law_, inertia, dt,
+                                           options_.solver_tolerance, options_.jacobi_sweeps);
+    const std::vector<Vec3> pull = surfactant_pull(step.pressing);
+    for (std::size_t i = 0; i < count; ++i) {
+        marangoni_[i] += geometry_.area[i] * pull[i];
+        coarse_.velocity[i] += (dt / inertia[i]) * pull[i];
     }
     return step;
 }
@@ -230,8 +230,9 @@ NormalStep MelpSolver::push_along_normals(double dt) {
         const Vec3& n = geometry_.normal[i];
         before[i] = dot(coarse_.velocity[i], n);
         external[i] = (liquid_density() * films_.liquid_volume[i]) * input_.films->material.gravity;
-        if (dot(n, options_.wind) < 0.0)  // the side that the wind blows on
-            external[i] += (options_.air_drag * geometry_.area[i]) * (options_.wind - coarse_.velocity[i]);
+        const Vec3 wind = wind_at(coarse_.position[i]);
+        if (dot(n, wind) < 0.0)  // the side that the wind blows on
+            external[i] += (options_.air_drag * geometry_.area[i]) * (wind - coarse_.velocity[i]);
     }
     const std::vector<double> mass = masses();
     NormalStep step = move_along_normals({.coarse = coarse_,
@@ -272,15 +273,6 @@ void MelpSolver::filter_short_waves() {
         const Vec3& n = geometry_.normal[i];
         coarse_.velocity[i] -= (options_.grid_filter * dot(rough[i], n)) * n;
     }
-}
-
-/// Swings that steps of this length do not resolve would ring from step to step with theta = 1/2: they are damped. So
-/// is everything while bubbles touch: forces at a junction are not those of the matrix to second order, and theta = 1/2
-/// blew two bubbles up that met without damping.
-double MelpSolver::theta_of(double dt) const {
-    constexpr double kResolved = 10.0;  // steps per period
-    const bool apart = geometry_.neighbors.other.index.empty() && !any_burst();
-    return apart && kResolved * dt < slowest_period(gas_) ? options_.theta : 1.0;
 }
 
 void MelpSolver::give_to_fine(double dt) {
@@ -342,6 +334,7 @@ void MelpSolver::move_fine(double dt) {
             fine_.thickness[p] *= std::exp(-dt * (slope[0][0] + slope[1][1] + slope[2][2]));
     });
     transfer_->project(geometry_.patch, geometry_.normal, fine_);
+    heat_.warm(dt, fine_);
     keep_inside({rims_now_, coarse_.position, coarse_.region, spacing_, 0.0}, fine_.region, fine_.normal,
                 fine_.position, fine_.velocity);
     constexpr std::int64_t kSortEvery = 32;
@@ -380,14 +373,42 @@ void MelpSolver::follow_contacts(double time) {
 
 void MelpSolver::update_liquid() {
     transfer_.emplace(coarse_, geometry_.normal, fine_, support_radius(), geometry_.images);
-    films_ = films_of(geometry_, coarse_, transfer_->to_coarse(coarse_, fine_), even_, law_);
+    gather_liquid();
+}
+
+/// The films as the fine particles make them, with the weights that are there.
+void MelpSolver::gather_liquid() {
+    films_ = films_of(geometry_, coarse_, transfer_->to_coarse(coarse_, fine_), even_, law_, heat_);
     // The thick edge of a hole is no film: surfactant that does not fit on it goes into its liquid.
     const double most = kMostOnEdges * law_.reference_concentration;
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         if (!gas_[static_cast<std::size_t>(coarse_.region[i])].burst) continue;
         films_.concentration[i] = std::min(films_.concentration[i], most);
-        films_.tension[i] = law_.tension(films_.concentration[i]);
+        films_.pressing[i] = std::min(films_.pressing[i], most);
+        films_.tension[i] = law_.tension(films_.pressing[i]) + heat_.extra_tension(films_.temperature[i]);
     }
+}
+
+/// Films of two bubbles that lie on each other even out.
+void MelpSolver::exchange_liquid(double dt) {
+    if (options_.exchange_rate == 0.0 || geometry_.neighbors.other.index.empty() || any_burst()) return;
+    std::vector<Vec3> velocity(coarse_.size());
+    for (std::size_t i = 0; i < coarse_.size(); ++i) velocity[i] = velocity_of(i);
+    Exchange gained = exchange_between(geometry_, films_, velocity, joined_, options_.exchange_rate, dt);
+    std::vector<Vec3> momentum = region_momenta(velocity);
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        momentum[static_cast<std::size_t>(coarse_.region[i])] += gained.momentum[i];
+        const double before = films_.liquid_volume[i], after = before + gained.liquid_volume[i];
+        const Vec3& n = geometry_.normal[i];
+        coarse_.velocity[i] += dot((before * velocity[i] + gained.momentum[i]) / after - velocity[i], n) * n;
+        gained.liquid_volume[i] /= before;
+        gained.momentum[i] = gained.momentum[i] / before;
+        gained.heat[i] /= before;
+        if (gained.surfactant[i] != 0.0) gained.surfactant[i] /= films_.concentration[i] * geometry_.area[i];
+    }
+    transfer_->grow({gained.liquid_volume, gained.surfactant, gained.momentum, gained.heat}, fine_);
+    gather_liquid();
+    give_back_to_liquid(momentum);
 }
 
 /// Sums over particles know a volume to a thousandth only, which would be 100 Pa: gases go by what films sweep, and
@@ -407,22 +428,6 @@ std::string MelpSolver::fault_of_step() const {
     for (const Gas& gas : gas_)
         if (gas.closed && !(gas.volume > 0.0)) return fmt::format("bubble {} has no volume left", gas.region);
     return {};
-}
-
-/// Of mode 2 of the smallest bubble, or of the first mode of a disk as large as the smallest film on wires, in an empty
-/// space but for air_mass. [method sheet 14, V7]
-double MelpSolver::slowest_period(const std::vector<Gas>& bubbles) const {
-    const film::Material& material = input_.films->material;
-    double shortest = std::numeric_limits<double>::infinity();
-    for (const Gas& gas : bubbles) {
-        if (gas.gone) continue;
-        const double radius = gas.radius();
-        const double mass = liquid_density() * material.thickness + options_.air_mass * material.air_density * radius;
-        constexpr double kDrum = 2.404825557695773;  // first zero of the Bessel function J_0
-        const double wave = gas.closed ? std::numbers::pi : 2.0 * std::numbers::pi / kDrum;
-        shortest = std::min(shortest, wave * radius * std::sqrt(mass / material.film_tension()));
-    }
-    return shortest;
 }
 
 }  // namespace lamella::melp

@@ -59,6 +59,10 @@ private:
     double choose_step(double time_limit) const;
     double shorter_step(double dt) const;
     double strongest_pull() const;
+    Vec3 wind_at(const Vec3& x) const;
+    Vec3 weight_at(std::size_t i) const;
+    std::vector<Vec3> surfactant_pull(std::span<const double> pressing) const;
+    std::vector<Vec3> other_pull() const;
     double fastest_edge() const;
     double theta_of(double dt) const;
     SurfactantStep push_along_film(double dt);
@@ -99,6 +103,8 @@ private:
     void keep_coarse_inside();
     void update_shape();
     void update_liquid();
+    void gather_liquid();
+    void exchange_liquid(double dt);
     void give_back_to_liquid(const std::vector<Vec3>& momentum);
     void give_back_to_even_films(const std::vector<Vec3>& drift);
     std::vector<Vec3> region_drifts_now() const;
@@ -117,6 +123,7 @@ private:
     Options options_;
     sim::SolverInput input_;
     film::SurfactantLaw law_;
+    Heat heat_;
 
     CoarseParticles coarse_;
     FineParticles fine_;

@@ -251,7 +251,7 @@ NormalStep move_along_normals(const NormalProblem& p) {
         gas[r] = p.gas[r].closed ? p.dt * p.dt * p.gas[r].amount / (p.gas[r].volume * p.gas[r].volume) : 0.0;
     std::vector<double> inertia(count), given(count), right(count), scale(count);
     const std::vector<Vec3> flight = p.shape_damping > 0.0
-                                         ? region_drifts(p.geometry, p.coarse, p.velocity, p.gas.size())
+                                         ? region_drifts(p.geometry, p.coarse, p.mass, p.velocity, p.gas.size())
                                          : std::vector<Vec3>(p.gas.size());
     for_each_particle(count, [&](std::size_t i) {
         const Spring walls = spring_of_walls(p, i);

@@ -87,6 +87,7 @@ sim::Surface MelpSolver::surface() const {
     }
     surface.vertex_fields = {{"thickness", "m", 1, false, with_feet(films_.seen_thickness)},
                              {"surfactant_concentration", "mol/m^2", 1, false, with_feet(films_.concentration)},
+                             {"temperature", "K", 1, false, with_feet(films_.temperature)},
                              {"curvature", "1/m", 1, false, with_feet(geometry_.curvature)},
                              std::move(velocity),
                              std::move(on_wire)};
@@ -207,10 +208,16 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
         {"fine_particles", "-", static_cast<double>(fine_.size()), "that are the liquid"},
     };
     for (std::size_t b = 0; b < bodies_.size(); ++b) append_scalars(b, bodies_[b], scalars);
+    std::vector<double> of_region(gas_.size(), 0.0);
+    for (std::size_t p = 0; p < fine_.size(); ++p)
+        of_region[static_cast<std::size_t>(fine_.region[p])] += fine_.liquid_volume[p];
     constexpr std::size_t kMostBubbles = 12;
-    for (std::size_t r = 0; r < std::min(gas_.size(), kMostBubbles); ++r)
-        scalars.push_back({"gauge_pressure_" + std::to_string(gas_[r].region), "Pa", gas_[r].balanced,
-                           "of its gas, above the outside"});
+    for (std::size_t r = 0; r < std::min(gas_.size(), kMostBubbles); ++r) {
+        const std::string number = std::to_string(gas_[r].region);
+        scalars.push_back({"gauge_pressure_" + number, "Pa", gas_[r].balanced, "of its gas, above the outside"});
+        scalars.push_back(
+            {"liquid_mass_" + number, "kg", liquid_density() * (of_region[r] + even_[r].liquid_volume), "of its film"});
+    }
     return scalars;
 }
 

@@ -43,6 +43,7 @@ struct FineParticles {
     std::vector<double> liquid_volume;  ///< [m^3]
     std::vector<double> surfactant;     ///< per interface [mol]
     std::vector<double> thickness;      ///< of the film there: what is seen [m]
+    std::vector<double> temperature;    ///< [K]
     std::vector<std::int32_t> region;   ///< as of coarse particles
 
     std::size_t size() const { return position.size(); }
@@ -56,6 +57,7 @@ struct FineParticles {
         visit("liquid_volume", self.liquid_volume);
         visit("surfactant", self.surfactant);
         visit("thickness", self.thickness);
+        visit("temperature", self.temperature);
         visit("region", self.region);
     }
 };

@@ -3,6 +3,7 @@
 #include "lamella/solvers/melp/refusals.h"
 
 #include "lamella/core/error.h"
+#include "lamella/film/surfactant.h"
 #include "lamella/solvers/melp/open_films.h"
 
 #include <fmt/format.h>
@@ -58,6 +59,24 @@ void refuse_unknown_solids(const film::Problem& films, const Options& options) {
     }
 }
 
+/// Warm films are less tense: some tension has to be left.
+void refuse_unknown_heat(const film::Material& material, const Options& options) {
+    const HeatOptions& heat = options.heat;
+    if (heat.source == HeatSource::kNone) return;
+    if (options.fine_ratio == 0) throw InputError("melp.fine_ratio = 0: heat is carried by fine particles only");
+    if (!(heat.temperature > 0.0)) throw InputError("melp.heat.temperature is missing: of the source, e.g. 320");
+    if (!(heat.reach > 0.0)) throw InputError("melp.heat.reach is missing: of the source, e.g. \"5 cm\"");
+    const double more = heat.temperature - material.temperature;
+    const double pressed =
+        film::kGasConstant * film::start_surfactant(material) * (2.0 * heat.temperature) - film::elasticity(material);
+    const double left = material.surface_tension + heat.tension_slope * more - std::max(pressed, 0.0);
+    if (!(left > 0.0))
+        throw InputError(
+            fmt::format("melp.heat.temperature = {:.4g} K leaves films with twice the surfactant no tension: "
+                        "{:.3g} N/m",
+                        heat.temperature, left));
+}
+
 }  // namespace
 
 void refuse_unknown_films(const film::Problem& films, const Options& options) {
@@ -83,6 +102,18 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
             throw InputError("melp.rim: a plate under films is built for [[film]] with shape = \"hemisphere\" only");
         else if (options.start.mode_amplitude != 0.0 && options.rim != RimHold::kWetPlate)
             throw InputError("melp.start.mode_amplitude: films that are held by wires start at rest");
+    refuse_unknown_heat(films.material, options);
+    if (options.fine_ratio == 0 && (options.start.spots > 0 || options.black_film.thickness > 0.0))
+        throw InputError("melp.fine_ratio = 0: black films are where fine particles have little liquid");
+    if (options.start.spots > 0 && options.start.spot_radius < 2.0 * films.edge_length)
+        throw InputError(
+            fmt::format("melp.start.spot_radius = {:.4g} m is too small for resolution.edge_length = {:.4g} m: "
+                        "twice of it at least will do",
+                        options.start.spot_radius, films.edge_length));
+    if (options.black_film.line_tension > 0.0 && options.black_film.thickness == 0.0)
+        throw InputError("melp.black_film.line_tension needs black_film.thickness, e.g. \"100 nm\"");
+    if (options.exchange_rate > 0.0 && options.fine_ratio == 0)
+        throw InputError("melp.fine_ratio = 0: films exchange liquid only where it is on fine particles");
     if (!films.tensions.empty()) throw InputError("melp: [[tension]] is not built yet; use solver equilibrium");
     refuse_unknown_solids(films, options);
     if (!films.vortices.empty()) throw InputError("melp: [[vortex]] is not built yet; use solver vortex_particle");

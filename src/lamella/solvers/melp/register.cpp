@@ -14,6 +14,7 @@ void register_melp(sim::SolverRegistry& registry) {
          .summary = "thin films and foams by moving Eulerian-Lagrangian particles [Deng22]",
          .films = true,
          .solids = true,
+         .bubble_thickness = true,
          .create =
              [](const sim::SolverInput& input) {
                  return std::make_unique<MelpSolver>(sim::read_options<Options>(input.options, kSi), input);

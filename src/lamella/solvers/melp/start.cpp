@@ -68,6 +68,7 @@ namespace {
 struct RegionStart {
     Sample coarse{}, fine{};
     double area = 0.0, volume = 0.0;  ///< volume 0: no gas
+    double thickness = 0.0;           ///< 0: material.thickness [m]
     Vec3 velocity{};
     std::optional<Vec3> center{};  ///< of modes and noise; nothing: the mean of its particles
     bool held = false;
@@ -85,10 +86,11 @@ void append(Start& start,
     for (const Vec3& x : region.coarse.position) center += x / static_cast<double>(region.coarse.position.size());
     center = region.center.value_or(center);
     const double share = region.area / static_cast<double>(std::max(region.fine.position.size(), std::size_t{1}));
-    thickness.begin(region.fine.position);
+    thickness.begin(region.fine.position, region.thickness);
     for (const Vec3& x : region.fine.position) {
-        const double thick = thickness.at(x, x - center);
-        const double soap = options.start.surfactant == StartSurfactant::kUniform ? 1.0 : thick;
+        const double whole = thickness.at(x, x - center);
+        const double soap = options.start.surfactant == StartSurfactant::kUniform ? 1.0 : whole;
+        const double thick = thickness.in_spot(x) ? options.start.spot_thickness / material.thickness : whole;
         start.fine.liquid_volume.push_back(thick * material.thickness * share);
         start.fine.surfactant.push_back(soap * film::start_surfactant(material) * share);
         start.fine.thickness.push_back(thick * material.thickness);
@@ -105,6 +107,7 @@ void append(Start& start,
     add(start.fine.normal, region.fine.normal);
     start.fine.velocity.resize(start.fine.position.size(), region.velocity);
     start.fine.gradient.resize(start.fine.position.size());
+    start.fine.temperature.resize(start.fine.position.size(), material.temperature);
     start.fine.region.resize(start.fine.position.size(), here);
 
     Gas gas{.region = number,
@@ -119,10 +122,10 @@ void append(Start& start,
         gas.balanced = gas.gauge_pressure(options.outside_pressure);
     }
     start.gas.push_back(gas);
-    start.even.push_back(
-        region.fine.position.empty()
-            ? EvenFilm{material.thickness * region.area, film::start_surfactant(material) * region.area, region.held}
-            : EvenFilm{.held = region.held});
+    const double even = region.thickness > 0.0 ? region.thickness : material.thickness;
+    start.even.push_back(region.fine.position.empty()
+                             ? EvenFilm{even * region.area, film::start_surfactant(material) * region.area, region.held}
+                             : EvenFilm{.held = region.held});
 }
 
 std::size_t particles_on(double area, double spacing) {
@@ -209,6 +212,7 @@ Start start_particles(const film::Problem& films, const Options& options, std::u
                                        static_cast<std::size_t>(options.fine_ratio) * region.coarse.position.size());
         }
         region.velocity = films.velocity[r];
+        region.thickness = films.thickness[r];
         total_area += region.area;
         append(start, std::move(region), static_cast<std::int32_t>(index(r)), films.mesh.regions[r].target_volume,
                films.material, options, thickness);

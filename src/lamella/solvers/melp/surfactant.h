@@ -9,7 +9,7 @@
 namespace lamella::melp {
 
 struct SurfactantStep {
-    std::vector<double> concentration;  ///< at the end of the step [mol/m^2]; drives the flow, it is not transported
+    std::vector<double> pressing;  ///< at the end of the step, see Films [mol/m^2]; drives the flow, is not transported
     linalg::IterativeSolution solution;
 };
 
@@ -23,8 +23,11 @@ struct SurfactantStep {
 /// beta = 2 R T / m, harmonic mean of a pair, omega the Laplacian's weights: symmetric, positive definite; edges let
 /// nothing through. [method sheet 6 R, eq. 8]
 ///
+/// Films that are warmer than the law's temperature have the concentration that presses as hard in the place of Gamma.
+///
 /// @param velocity  u*, all forces but the surfactant's applied [m/s]
 /// @param inertia   m, that of the film per area, rho eta, and what drag of the air adds in a step [kg/m^2]
+/// @param jacobi_sweeps  more than 0: so many relaxed sweeps in the place of conjugate gradients, as [Deng22] makes
 SurfactantStep solve_surfactant(const Geometry& geometry,
                                 std::span<const Vec3> position,
                                 const Films& films,
@@ -32,6 +35,7 @@ SurfactantStep solve_surfactant(const Geometry& geometry,
                                 const film::SurfactantLaw& law,
                                 std::span<const double> inertia,
                                 double dt,
-                                double tolerance);
+                                double tolerance,
+                                int jacobi_sweeps);
 
 }  // namespace lamella::melp

@@ -146,19 +146,21 @@ void Transfer::hand_in_pictures(Gathered& gathered) const {
         gathered.liquid_volume[source] += volume;
         gathered.surfactant[source] += gathered.surfactant[count + m];
         gathered.seen_volume[source] += gathered.seen_volume[count + m];
+        gathered.heat[source] += gathered.heat[count + m];
         const Vec3 w = gathered.momentum[count + m] - volume * mirror.drift;
         gathered.momentum[source] += w[0] * mirror.map[0] + w[1] * mirror.map[1] + w[2] * mirror.map[2];
     }
     gathered.liquid_volume.resize(count);
     gathered.surfactant.resize(count);
     gathered.seen_volume.resize(count);
+    gathered.heat.resize(count);
     gathered.momentum.resize(count);
 }
 
 Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles& fine) const {
     // What a fine particle gives, all times its weight: volume, surfactant, seen volume, momentum at the chunk's origin
-    // and its gradient (9), and one spare to fill two rows of eight.
-    constexpr std::size_t kGiven = 16, kKept = 6;
+    // and its gradient (9), and heat: two rows of eight.
+    constexpr std::size_t kGiven = 16, kKept = 7;
     const std::vector<Vec3> place = places_with_pictures(coarse.position);
     std::vector<std::vector<double>> received(chunks_.size());  // kKept per coarse particle of the chunk
     parallel_blocks(chunks_.size(), 1, [&](std::size_t c, std::size_t) {
@@ -176,6 +178,7 @@ Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles&
                     given[l][3 + k] = v * at_origin[k];
                     for (std::size_t m = 0; m < 3; ++m) given[l][6 + 3 * k + m] = v * fine.gradient[p][k][m];
                 }
+                given[l][15] = v * fine.temperature[p];
             }
             for (std::size_t row = 0; row < block.rows; ++row) {
                 const float* weight = &chunk.weight[(block.weights + row) * kLanes];
@@ -195,6 +198,7 @@ Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles&
             for (std::size_t q = 0; q < 3; ++q)
                 to[3 + q] =
                     sum[k][3 + q] + sum[k][6 + 3 * q] * d[0] + sum[k][7 + 3 * q] * d[1] + sum[k][8 + 3 * q] * d[2];
+            to[6] = sum[k][15];
         }
     });
 
@@ -203,6 +207,7 @@ Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles&
     gathered.surfactant.resize(place.size());
     gathered.seen_volume.resize(place.size());
     gathered.momentum.resize(place.size());
+    gathered.heat.resize(place.size());
     parallel_for(place.size(), [&](std::size_t e) {
         std::array<double, kKept> sum{};
         for (std::size_t k = places_start_[e]; k < places_start_[e + 1]; ++k)
@@ -211,6 +216,7 @@ Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles&
         gathered.surfactant[e] = sum[1];
         gathered.seen_volume[e] = sum[2];
         gathered.momentum[e] = {{sum[3], sum[4], sum[5]}};
+        gathered.heat[e] = sum[6];
     });
     hand_in_pictures(gathered);
     return gathered;
@@ -314,6 +320,38 @@ void Transfer::to_fine(const CoarseValues& from, double rate, FineParticles& fin
                 fine.gradient[p] = affine_map(moment, spread, fine.normal[p], floor, d);
                 fine.velocity[p] = u - fine.gradient[p] * d;
                 fine.thickness[p] += rate * (mean(21) - mean(22));
+            }
+        }
+    });
+}
+
+void Transfer::grow(const Growth& growth, FineParticles& fine) const {
+    constexpr std::size_t kSums = 6;
+    const std::size_t count = growth.liquid_volume.size();
+    parallel_blocks(chunks_.size(), 1, [&](std::size_t c, std::size_t) {
+        const Chunk& chunk = chunks_[c];
+        for (const Block& block : chunk.block) {
+            std::array<Lanes, kSums> sum{};
+            for (std::size_t row = 0; row < block.rows; ++row) {
+                const float* weight = &chunk.weight[(block.weights + row) * kLanes];
+                std::uint32_t e = chunk.coarse[chunk.candidate[block.candidates + row]];
+                const Picture* picture = e < count ? nullptr : &pictures_[e - count];
+                if (picture != nullptr) e = picture->source;
+                const Vec3 u = picture == nullptr ? growth.momentum[e] : picture->mirror.map * growth.momentum[e];
+                const std::array<double, kSums> gain{growth.liquid_volume[e], growth.surfactant[e], u[0], u[1], u[2],
+                                                     growth.heat[e]};
+                for (std::size_t q = 0; q < kSums; ++q)
+                    for (std::size_t l = 0; l < kLanes; ++l) sum[q][l] += static_cast<double>(weight[l]) * gain[q];
+            }
+            for (std::size_t l = 0; l < block.count; ++l) {
+                const std::size_t p = block.first + l;
+                const double scale = inverse_sum_[p], factor = 1.0 + scale * sum[0][l];
+                const Vec3 gained{{sum[2][l], sum[3][l], sum[4][l]}};
+                fine.liquid_volume[p] *= factor;
+                fine.thickness[p] *= factor;
+                fine.surfactant[p] *= 1.0 + scale * sum[1][l];
+                fine.velocity[p] = (fine.velocity[p] + scale * gained) / factor;
+                fine.temperature[p] = (fine.temperature[p] + scale * sum[5][l]) / factor;
             }
         }
     });

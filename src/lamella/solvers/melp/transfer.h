@@ -16,6 +16,7 @@ struct Gathered {
     std::vector<double> liquid_volume;  ///< [m^3]
     std::vector<double> surfactant;     ///< [mol]
     std::vector<double> seen_volume;    ///< liquid volume * the fine particles' own thickness [m^4]
+    std::vector<double> heat;           ///< liquid volume * temperature [m^3 K]
     std::vector<Vec3> momentum;         ///< per density of the liquid [m^4/s]
 };
 
@@ -24,6 +25,14 @@ struct CoarseValues {
     std::span<const Vec3> position, velocity;
     std::span<const double> thickness;       ///< [m]
     std::span<const double> seen_thickness;  ///< the fine particles' own, averaged [m]
+};
+
+/// What coarse particles gain, over what they have gathered.
+struct Growth {
+    std::span<const double> liquid_volume;  ///< above -1 [-]
+    std::span<const double> surfactant;     ///< above -1 [-]
+    std::span<const Vec3> momentum;         ///< per gathered mass [m/s]
+    std::span<const double> heat;           ///< liquid volume * temperature, per gathered volume [K]
 };
 
 /// Weights between fine and coarse particles of one region:
@@ -60,6 +69,11 @@ public:
     ///   eta_L <- eta_L + rate (eta_E - seen eta_E).
     /// Fine particles that no coarse one reaches keep what they have.
     void to_fine(const CoarseValues& coarse, double rate, FineParticles& fine) const;
+
+    /// Fine particles grow as the film around them: liquid and surfactant of each, and how thick the film is seen
+    /// there, by the mean of what coarse ones gain over what they have gathered; momentum and heat by what that liquid
+    /// brings. So all that coarse particles gain arrives, to rounding. Gradients of the velocity stay.
+    void grow(const Growth& growth, FineParticles& fine) const;
 
     /// Moves fine particles along the normals onto the patches, blended with the weights, and sets their normals.
     /// The patches may have moved on since the weights were found.

@@ -1,0 +1,60 @@
+// Black film: what its border may and may not do. Closed forms: tests/validation/melp/black_film_test.cpp.
+
+#include "lamella/solvers/melp/black_film.h"
+
+#include "lamella/core/error.h"
+
+#include <gtest/gtest.h>
+
+#include "bubbles.h"
+#include "same_bits.h"
+
+namespace lamella::melp {
+namespace {
+
+constexpr const char* kFrame = "[[film]]\nshape = \"rectangle\"\nu = [0.06, 0.0, 0.0]\nv = [0.0, 0.0, 0.05]\n";
+const std::string kSpots =
+    "steps_per_period = 0.0\nlargest_step = 2e-3\nair_drag = 1e-3\nfine_ratio = 8\nstart.spots = 4\n"
+    "start.spot_radius = 0.007\nstart.spot_center = [0.03, 0.0, 0.01]\nstart.spot_spread = 0.015\n"
+    "black_film.thickness = 1e-7\nblack_film.line_tension = 1e-6\n";
+
+TEST(BlackFilm, IsWhatIsThin) {
+    const std::vector<double> chi = blackness(std::vector<double>{1e-8, 1e-7, 5e-7}, 1e-7);
+    EXPECT_NEAR(chi[0], 1.0, 1e-3);
+    EXPECT_NEAR(chi[1], 0.5, 1e-12);
+    EXPECT_NEAR(chi[2], 0.0, 2e-3);
+}
+
+TEST(BlackFilm, HasABorderThatPushesNothingAsAWhole) {
+    const auto solver = films(kFrame, 0.003, kSpots, "gravity = [0.0, 0.0, -9.81]");
+    const std::vector<double> chi = blackness(solver->films().thickness, 1e-7);
+    EXPECT_GT(*std::max_element(chi.begin(), chi.end()), 0.8);
+    Vec3 sum;
+    double size = 0.0;
+    for (const Vec3& f : line_pull(solver->geometry(), solver->coarse().position, chi, 1e-6)) {
+        sum += f;
+        size += norm(f);
+    }
+    EXPECT_GT(size, 1e-8);
+    EXPECT_LT(norm(sum), 1e-12 * size);
+}
+
+TEST(BlackFilm, GivesTheSameBitsOnAnyNumberOfThreadsAndAfterAResume) {
+    expect_same_bits([] { return films(kFrame, 0.003, kSpots, "gravity = [0.0, 0.0, -9.81]"); }, 40, 23);
+}
+
+TEST(BlackFilm, KeepsTheSurfactantOfTheFilmInItsSpots) {
+    const auto with = films(kFrame, 0.003, kSpots), without = films(kFrame, 0.003, "fine_ratio = 8\n");
+    EXPECT_NEAR(scalar(*with, "surfactant_amount") / scalar(*without, "surfactant_amount"), 1.0, 1e-12);
+    EXPECT_LT(scalar(*with, "liquid_mass"), 0.95 * scalar(*without, "liquid_mass"));
+}
+
+TEST(BlackFilm, IsRefusedWhereItMakesNoSense) {
+    EXPECT_THROW(films(kFrame, 0.003, kSpots + "start.spot_thickness = 0.0\n"), InputError);
+    EXPECT_THROW(films(kFrame, 0.004, kSpots), InputError);  // spots too small for that
+    EXPECT_THROW(films(kFrame, 0.003, "fine_ratio = 0\nstart.spots = 1\nstart.spot_radius = 0.01\n"), InputError);
+    EXPECT_THROW(films(kFrame, 0.003, "black_film.line_tension = 1e-6\n"), InputError);
+}
+
+}  // namespace
+}  // namespace lamella::melp
