@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -47,6 +48,10 @@ public:
 
     /// Time that this process has spent in reduce, exchange, begin and end: moving data, and waiting for others [s].
     virtual double seconds() const { return 0.0; }
+    /// A clock that stands while this process waits for others or moves data [s].
+    virtual double work_clock() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count() - seconds();
+    }
 
     /// Ends the other processes, and maybe this one: it met an error that they do not know of. Not collective.
     virtual void abort(int exit_code) = 0;

@@ -21,7 +21,11 @@ public:
         : size_(size),
           outgoing_(static_cast<std::size_t>(size)),
           integers_(outgoing_.size()),
-          reals_(outgoing_.size()) {}
+          reals_(outgoing_.size()),
+          pace_(outgoing_.size(), 1.0) {}
+
+    /// How far the clock of each process goes whenever it is read [s].
+    void set_pace(std::vector<double> pace) { pace_ = std::move(pace); }
 
     class Member final : public dist::Communicator {
         template <class List>
@@ -80,6 +84,7 @@ public:
             meet();
         }
         void abort(int) override { std::terminate(); }
+        double work_clock() const override { return clock_ += team_.pace_[static_cast<std::size_t>(rank_)]; }
 
     private:
         void meet() { team_.meet(); }
@@ -87,6 +92,7 @@ public:
         ProcessTeam& team_;
         int rank_;
         std::vector<dist::Incoming> incoming_;
+        mutable double clock_ = 0.0;
     };
 
     /// Calls work(communicator) as each process, all of which must meet equally often.
@@ -147,6 +153,7 @@ private:
     std::vector<std::vector<std::int64_t>> integers_;
     std::vector<std::vector<double>> reals_;
     std::span<std::byte> broadcast_;
+    std::vector<double> pace_;
 };
 
 /// Calls work(communicator) as each of `size` processes. An error of process 0 reaches the caller.
