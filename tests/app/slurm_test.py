@@ -205,7 +205,8 @@ class SweepOnSlurm(ProgramTest):
     def test_runs_one_foam_on_processes_that_srun_starts(self):
         if "mpi" not in json.loads(lamella("version", "--json").stdout)["parts"]:
             self.skipTest("a build without MPI")
-        if "pmix" not in self.slurm.run("srun", "--mpi=list").stderr:
+        known = self.slurm.run("srun", "--mpi=list")
+        if "pmix" not in known.stdout + known.stderr:
             self.skipTest("this Slurm does not speak PMIx")
         scene = self.folder / "foam.toml"
         scene.write_text(FOAM.format(count=300, end=0.4))
