@@ -22,8 +22,8 @@ struct Incoming {
 
 /// The processes that compute one simulation together; "rank" is a process's number among them, from 0.
 ///
-/// Everything but rank() and size() is collective: all processes call the same function in the same order. What comes
-/// out of sum() and largest() is the same on all, so that decisions that rest on it are.
+/// Everything but rank(), size() and the clocks is collective: all processes call the same function in the same order.
+/// What comes out of sum() and largest() is the same on all, so that decisions that rest on it are.
 class Communicator {
 public:
     virtual ~Communicator() = default;
@@ -45,6 +45,9 @@ public:
     /// What comes in is there after end(), and work can be done in between. Not for messages to oneself.
     virtual void begin(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) = 0;
     virtual void end() = 0;
+    /// As end(), but what goes out may still be on its way: it must stay as it is until the next call of a function
+    /// that all processes call, begin() among them. Who sends does not wait for who receives.
+    virtual void receive() { end(); }
 
     /// Time that this process has spent in reduce, exchange, begin and end: moving data, and waiting for others [s].
     virtual double seconds() const { return 0.0; }

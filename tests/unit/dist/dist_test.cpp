@@ -178,7 +178,9 @@ TEST(Balance, TakesNewWeightsWhereTheSlowestHoldsUpTheOthers) {
                 if (changed && processes->rank() == 0) ++changes;
             }
             const std::vector<std::int64_t> all(balance.weights().begin(), balance.weights().end());
-            if (!weights.empty()) EXPECT_EQ(all, weights) << "not the same on all processes";
+            if (!weights.empty()) {
+                EXPECT_EQ(all, weights) << "not the same on all processes";
+            }
             weights = all;
             shares += balance.share();
         });

@@ -222,7 +222,7 @@ void System<D>::stage_current() {
 }
 
 template <int D>
-Evaluation System<D>::evaluate(Gas gas, Stiffness stiffness) {
+Evaluation System<D>::evaluate(Gas gas, Stiffness stiffness, double* also) {
     std::vector<Column*> read_by_neighbors;
     for (auto& column : stage.position) read_by_neighbors.push_back(&column);
     read_by_neighbors.push_back(&stage.radius);
@@ -230,7 +230,7 @@ Evaluation System<D>::evaluate(Gas gas, Stiffness stiffness) {
     domain_->begin_refresh(read_by_neighbors);
     rates.resize(length());
     Evaluation evaluation =
-        contact_pass<D>(model, foam.box, neighbors_, stage, gas, stiffness, *domain_, foam.live, rates);
+        contact_pass<D>(model, foam.box, neighbors_, stage, gas, stiffness, *domain_, foam.live, rates, also);
     const double walls = liquid_.apply(neighbors_, stage, foam.velocity, *domain_, rates);
     if (stiffness == Stiffness::kBound) evaluation.stiffness += walls;
     return evaluation;

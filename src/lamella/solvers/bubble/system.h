@@ -74,8 +74,8 @@ public:
     /// stage = the current state.
     void stage_current();
 
-    /// rates = the right-hand side at `stage`.
-    Evaluation evaluate(Gas gas, Stiffness stiffness);
+    /// rates = the right-hand side at `stage`. @param also  as of contact_pass
+    Evaluation evaluate(Gas gas, Stiffness stiffness, double* also = nullptr);
 
     /// foam.velocity and foam.size_rate from `rates` and the exchange of an evaluation of the current state.
     void keep_rates(const GasExchange& gas);
