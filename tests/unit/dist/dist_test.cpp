@@ -155,6 +155,25 @@ TEST(Halo, KeepsCopiesUpToDateThroughRenumbering) {
     });
 }
 
+TEST(Halo, LeavesWhatIsOnItsWayUntilAllMeet) {
+    as_processes(2, [&](const std::shared_ptr<Communicator>& processes) {
+        std::vector<std::vector<std::uint32_t>> wanted(2);
+        wanted[static_cast<std::size_t>(1 - processes->rank())] = {1, 0};
+        Halo halo(*processes, wanted);
+        halo.renumber(std::vector<std::uint32_t>{0, 1, 2}, 8);
+        Column column(8, 0.0);
+        Column* const columns[] = {&column};
+        for (int round = 1; round <= 4; ++round) {  // between which nothing else is called: see ProcessTeam
+            column[0] = 10.0 * round + processes->rank();
+            column[1] = -column[0];
+            halo.begin(columns);
+            halo.end();
+            EXPECT_EQ(column[8], -(10.0 * round + 1 - processes->rank()));
+            EXPECT_EQ(column[9], 10.0 * round + 1 - processes->rank());
+        }
+    });
+}
+
 TEST(Balance, GivesEachAsMuchAsItIsFast) {
     using List = std::vector<std::int64_t>;
     EXPECT_EQ(weights_for(List{30'000, 30'000}), (List{1024, 1024}));
