@@ -1,6 +1,6 @@
 #include "lamella/solvers/melp/bursting.h"
 
-#include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/operators.h"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ std::vector<Vec3> edge_pull(const Geometry& g,
     const Neighbors& same = g.neighbors.same;
     const std::vector<Vec3>& x = coarse.position;
     std::vector<Vec3> pull(coarse.size());
-    parallel_for(coarse.size(), [&](std::size_t i) {
+    for_each_particle(coarse.size(), [&](std::size_t i) {
         if (zone[i] == 0) return;
         Vec3 sum;
         const auto add = [&](std::size_t j, double laplacian, const Vec3& place) {
@@ -66,13 +66,13 @@ std::vector<Vec3> shared_acceleration(const Geometry& g, std::span<const Vec3> f
     const Neighbors& same = g.neighbors.same;
     const double own = same.kernel.value(0.0);
     std::vector<Vec3> per_mass(g.size());
-    parallel_for(g.size(), [&](std::size_t j) {
+    for_each_particle(g.size(), [&](std::size_t j) {
         double around = own * mass[j];
         for (std::size_t k = same.begin(j); k < same.end(j); ++k) around += same.weight[k] * mass[same.index[k]];
         per_mass[j] = force[j] / around;
     });
     std::vector<Vec3> acceleration(g.size());
-    parallel_for(g.size(), [&](std::size_t i) {
+    for_each_particle(g.size(), [&](std::size_t i) {
         Vec3 sum = own * per_mass[i];
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum += same.weight[k] * per_mass[same.index[k]];
         acceleration[i] = sum - dot(sum, g.normal[i]) * g.normal[i];

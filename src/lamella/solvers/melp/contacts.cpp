@@ -1,5 +1,7 @@
 #include "lamella/solvers/melp/contacts.h"
 
+#include "lamella/solvers/melp/loops.h"
+
 #include <algorithm>
 #include <limits>
 #include <tuple>
@@ -9,23 +11,6 @@ namespace lamella::melp {
 namespace {
 
 bool before(const Contact& p, const Contact& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); }
-
-/// Every pair of regions of the list once, ascending.
-std::vector<Contact> pairs_in(const Neighbors& other, std::span<const std::int32_t> region, double time) {
-    std::vector<Contact> found;
-    for (std::size_t i = 0; i < other.size(); ++i)
-        for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
-            const Contact pair{region[i], region[other.index[k]], time};
-            // Neighbors lie in runs of one region.
-            if (pair.a < pair.b && (found.empty() || found.back().a != pair.a || found.back().b != pair.b))
-                found.push_back(pair);
-        }
-    std::sort(found.begin(), found.end(), before);
-    found.erase(std::unique(found.begin(), found.end(),
-                            [](const Contact& p, const Contact& q) { return p.a == q.a && p.b == q.b; }),
-                found.end());
-    return found;
-}
 
 }  // namespace
 
@@ -37,9 +22,11 @@ const Contact* Contacts::find(std::int32_t a, std::int32_t b) const {
 
 void Contacts::update(const Neighbors& other, std::span<const std::int32_t> region, double time) {
     if (at_once()) return;
-    std::vector<Contact> now = pairs_in(other, region, time);
-    for (Contact& pair : now)
-        if (const Contact* known = find(pair.a, pair.b)) pair.since = known->since;
+    std::vector<Contact> now;
+    for (const auto& [a, b] : touching_regions(other, region)) {
+        const Contact* known = find(a, b);
+        now.push_back({a, b, known == nullptr ? time : known->since});
+    }
     pairs_ = std::move(now);
 }
 
@@ -74,11 +61,18 @@ std::vector<double> Contacts::joined(const Neighbors& other, std::span<const std
     std::vector<double> result;
     if (at_once()) return result;
     result.resize(other.index.size());
-    for (std::size_t i = 0; i < other.size(); ++i)
+    for_each_particle(other.size(), [&](std::size_t i) {
+        std::int32_t last = -1;
+        double joined = 0.0;
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
-            const Contact* pair = find(region[i], region[other.index[k]]);
-            result[k] = pair == nullptr ? 0.0 : share(pair->since, time);
+            if (const std::int32_t there = region[other.index[k]]; there != last) {
+                const Contact* pair = find(region[i], there);
+                joined = pair == nullptr ? 0.0 : share(pair->since, time);
+                last = there;
+            }
+            result[k] = joined;
         }
+    });
     return result;
 }
 

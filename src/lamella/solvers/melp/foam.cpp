@@ -1,6 +1,6 @@
 #include "lamella/solvers/melp/foam.h"
 
-#include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/point_grid.h"
 
 #include <algorithm>
@@ -135,7 +135,7 @@ std::size_t flipped_normals(const CoarseParticles& coarse,
     const double reach = kNext * spacing;
     const PointGrid grid(coarse.position, reach);
     std::vector<std::uint8_t> flipped(coarse.size(), 0);
-    parallel_for(coarse.size(), [&](std::size_t i) {
+    for_each_particle(coarse.size(), [&](std::size_t i) {
         double agree = 0.0;
         grid.for_each_near(coarse.position[i], reach, [&](std::uint32_t j) {
             if (j != i && coarse.region[i] == coarse.region[j] &&

@@ -1,8 +1,7 @@
 #include "lamella/solvers/melp/free_clusters.h"
 
-#include "lamella/core/parallel.h"
 #include "lamella/linalg/dense.h"
-#include "lamella/solvers/melp/surface.h"
+#include "lamella/solvers/melp/loops.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,24 +16,6 @@ constexpr std::size_t kRigid = std::tuple_size_v<Rigid>;
 
 std::size_t region_of(const CoarseParticles& coarse, std::size_t i) {
     return static_cast<std::size_t>(coarse.region[i]);
-}
-
-/// For each region the smallest one of the cluster it belongs to by contact.
-std::vector<std::size_t> clusters(const CoarseParticles& coarse, const Geometry& geometry, std::size_t regions) {
-    std::vector<std::size_t> cluster(regions);
-    std::iota(cluster.begin(), cluster.end(), std::size_t{0});
-    const auto root = [&](std::size_t r) {
-        while (cluster[r] != r) r = cluster[r];
-        return r;
-    };
-    const Neighbors& other = geometry.neighbors.other;
-    for (std::size_t i = 0; i < coarse.size(); ++i)
-        for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
-            const std::size_t a = root(region_of(coarse, i)), b = root(region_of(coarse, other.index[k]));
-            cluster[std::max(a, b)] = std::min(a, b);
-        }
-    for (std::size_t& r : cluster) r = root(r);
-    return cluster;
 }
 
 /// Directions of forces and moments.
@@ -85,6 +66,21 @@ double fold(const Geometry& geometry, std::size_t i) {
 
 }  // namespace
 
+std::vector<std::size_t> clusters(const CoarseParticles& coarse, const Geometry& geometry, std::size_t regions) {
+    std::vector<std::size_t> cluster(regions);
+    std::iota(cluster.begin(), cluster.end(), std::size_t{0});
+    const auto root = [&](std::size_t r) {
+        while (cluster[r] != r) r = cluster[r];
+        return r;
+    };
+    for (const auto& [p, q] : touching_regions(geometry.neighbors.other, coarse.region)) {
+        const std::size_t a = root(static_cast<std::size_t>(p)), b = root(static_cast<std::size_t>(q));
+        cluster[std::max(a, b)] = std::min(a, b);
+    }
+    for (std::size_t& r : cluster) r = root(r);
+    return cluster;
+}
+
 FreeCluster::FreeCluster(const CoarseParticles& coarse,
                          const Geometry& geometry,
                          std::vector<std::size_t> members,
@@ -102,22 +98,41 @@ void FreeCluster::remove_resultant(std::vector<double>& values,
                                    std::span<const Vec3> beside,
                                    std::span<const double> share) const {
     const std::size_t count = directions_.size();
-    std::vector<double> matrix(count * count, 0.0), resultant(count, 0.0);
-    for (const std::size_t i : members_) {
-        const Rigid e = rigid(i, geometry_.normal[i]);
-        const Rigid f = rigid(i, values[i] * geometry_.normal[i] + beside[i]);
-        for (std::size_t a = 0; a < count; ++a) {
-            resultant[a] += f[a];
-            for (std::size_t b = 0; b < count; ++b) matrix[a * count + b] += share[i] * e[a] * e[b];
+    struct Sums {
+        std::array<double, kRigid * kRigid> matrix{};
+        std::array<double, kRigid> resultant{};
+    };
+    const auto of_members = [&](std::size_t begin, std::size_t end) {
+        Sums sums;
+        for (std::size_t m = begin; m < end; ++m) {
+            const std::size_t i = members_[m];
+            const Rigid e = rigid(i, geometry_.normal[i]);
+            const Rigid f = rigid(i, values[i] * geometry_.normal[i] + beside[i]);
+            for (std::size_t a = 0; a < count; ++a) {
+                sums.resultant[a] += f[a];
+                for (std::size_t b = 0; b < count; ++b) sums.matrix[a * count + b] += share[i] * e[a] * e[b];
+            }
         }
-    }
+        return sums;
+    };
+    const auto both = [](Sums a, const Sums& b) {
+        for (std::size_t k = 0; k < a.matrix.size(); ++k) a.matrix[k] += b.matrix[k];
+        for (std::size_t k = 0; k < a.resultant.size(); ++k) a.resultant[k] += b.resultant[k];
+        return a;
+    };
+    const Sums sums = parallel_reduce(members_.size(), Sums{}, of_members, both);
+    const std::vector<double> matrix(sums.matrix.begin(),
+                                     sums.matrix.begin() + static_cast<std::ptrdiff_t>(count * count));
+    const std::vector<double> resultant(sums.resultant.begin(),
+                                        sums.resultant.begin() + static_cast<std::ptrdiff_t>(count));
     // A sphere cannot be twisted by forces along its normals: such directions stay as they are.
     constexpr double kCannot = 1e-4;
     const auto z = linalg::solve_symmetric(count, matrix, resultant, kCannot).x;
-    for (const std::size_t i : members_) {
+    for_each_particle(members_.size(), [&](std::size_t m) {
+        const std::size_t i = members_[m];
         const Rigid e = rigid(i, geometry_.normal[i]);
         for (std::size_t a = 0; a < count; ++a) values[i] -= share[i] * e[a] * z[a];
-    }
+    });
 }
 
 /// A vector at a particle and its moment about the center, over the cluster's size, in the cluster's directions.
@@ -159,9 +174,9 @@ std::vector<double> gas_areas(const CoarseParticles& coarse,
                               std::span<const Gas> gas,
                               std::span<const RimPiece> rims) {
     std::vector<double> area(geometry.size()), share(geometry.size());
-    parallel_for(area.size(), [&](std::size_t i) {
+    for_each_particle(area.size(), [&](std::size_t i) {
         const Neighbors& other = geometry.neighbors.other;
-        area[i] = other.begin(i) == other.end(i) ? geometry.area[i] : cell_area(coarse, geometry, i);
+        area[i] = other.begin(i) == other.end(i) ? geometry.area[i] : geometry.star[i].cell_area;
         share[i] = area[i] * fold(geometry, i);
     });
     const std::vector<Vec3> nothing(area.size());

@@ -45,6 +45,9 @@ private:
     double length_ = 0.0;
 };
 
+/// For each region the smallest one of the cluster that it belongs to by contact.
+std::vector<std::size_t> clusters(const CoarseParticles& coarse, const Geometry& geometry, std::size_t regions);
+
 /// All that fly, and half bubbles on plates; none that has burst.
 std::vector<FreeCluster> free_clusters(const CoarseParticles& coarse,
                                        const Geometry& geometry,

@@ -47,11 +47,15 @@ Patch fit_patch(std::span<const Vec3> position,
 }
 
 PatchShape shape_of(const Patch& patch) {
+    // Films that are resolved are less steep than this over their smooth normals; the fit at a sharp fold may tilt onto
+    // one of its faces, and onto the other one in the next step.
+    constexpr double kSteepest = 0.4;
     const auto& c = patch.c;
     const double zu = c[1], zv = c[2], zuu = 2.0 * c[3], zuv = c[4], zvv = 2.0 * c[5];
     const double g = 1.0 + zu * zu + zv * zv;
     const double sum = ((1.0 + zv * zv) * zuu - 2.0 * zu * zv * zuv + (1.0 + zu * zu) * zvv) / (g * std::sqrt(g));
-    const Vec3 normal = patch.frame.normal - zu * patch.frame.e1 - zv * patch.frame.e2;
+    const double slope = std::sqrt(zu * zu + zv * zv), part = slope > kSteepest ? kSteepest / slope : 1.0;
+    const Vec3 normal = patch.frame.normal - part * (zu * patch.frame.e1 + zv * patch.frame.e2);
     return {normal / norm(normal), sum};
 }
 
@@ -105,6 +109,7 @@ Geometry geometry_of(const CoarseParticles& coarse, double support_radius, std::
     g.curvature.resize(count);
     g.area.resize(count);
     g.gradient_map.resize(count);
+    g.star.resize(count);
     constexpr std::size_t kBlock = 256;
     parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
@@ -120,7 +125,10 @@ Geometry geometry_of(const CoarseParticles& coarse, double support_radius, std::
     });
     if (!g.images.empty()) g.mirrored_map.resize(count);
     parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
+        VoronoiCell cell;
         for (std::size_t i = first; i < last; ++i) {
+            if (g.neighbors.other.begin(i) != g.neighbors.other.end(i))
+                g.star[i] = star_of(coarse.position, g.normal, same, i, cell);
             g.gradient_map[i] = gradient_map(coarse.position, g.area, g.normal[i], same, nothing, i);
             if (!g.images.empty())
                 g.mirrored_map[i] = gradient_map(coarse.position, g.area, g.normal[i], same, g.images, i);

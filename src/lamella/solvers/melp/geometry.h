@@ -5,6 +5,7 @@
 #include "lamella/solvers/melp/neighbors.h"
 #include "lamella/solvers/melp/particles.h"
 #include "lamella/solvers/melp/tensor.h"
+#include "lamella/solvers/melp/voronoi.h"
 
 #include <array>
 #include <span>
@@ -59,6 +60,7 @@ struct Geometry {
     std::vector<Vec3> normal;
     std::vector<double> curvature;     ///< measured, for reports; no force comes from it [1/m]
     std::vector<double> area;          ///< 1 / sum W, the particle itself counted [m^2]
+    std::vector<Star> star;            ///< of particles near films of other regions, nothing elsewhere
     std::vector<Tensor> gradient_map;  ///< makes gradients of linear fields exact, and tangent: see gradient()
     std::vector<Tensor> mirrored_map;  ///< the same with what lies beyond rims; empty where there are none
 

@@ -32,7 +32,8 @@ Images find_images(std::span<const RimPiece> pieces,
     if (pieces.empty()) return images;
     const std::size_t count = position.size();
     // Pictures of each particle, `first[i]` to `first[i + 1]`.
-    std::vector<std::uint32_t> first{0}, source;
+    std::vector<std::uint32_t> first{0};
+    std::vector<std::uint32_t>& source = images.source;
     std::vector<Vec3> place;
     for (std::size_t i = 0; i < count; ++i) {
         append_mirrors(pieces, region[i], position[i], normal[i], support_radius, images.mirrors);

@@ -25,6 +25,7 @@ struct Images {
     /// both pictures of a pair together, the geometric mean.
     std::vector<double> follow;
     std::vector<Mirror> mirrors;
+    std::vector<std::uint32_t> source;  ///< per mirror: the particle that it makes a picture of
 
     std::size_t begin(std::size_t i) const { return start.empty() ? 0 : start[i]; }
     std::size_t end(std::size_t i) const { return start.empty() ? 0 : start[i + 1]; }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
 
 namespace lamella::melp {
 
@@ -38,6 +40,12 @@ struct FilmKernel {
         if (s < 1.0) return scale * 18.0 * (120.0 - 120.0 * s * s + 50.0 * s * s * s);
         const double slope = -15.0 * fourth_power(std::max(3.0 - s, 0.0)) + 90.0 * fourth_power(std::max(2.0 - s, 0.0));
         return -2.0 * scale * slope * 3.0 / s;
+    }
+
+    /// Both for many pairs, with vector instructions.
+    void weigh(std::span<const double> squared_distance, std::span<double> weight, std::span<double> laplacian) const {
+        for (std::size_t k = 0; k < weight.size(); ++k) weight[k] = value(squared_distance[k]);
+        for (std::size_t k = 0; k < weight.size(); ++k) laplacian[k] = laplacian_weight(squared_distance[k]);
     }
 
     static constexpr double kAlpha = 63.0 / (478.0 * 3.14159265358979323846);

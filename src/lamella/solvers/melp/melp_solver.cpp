@@ -3,6 +3,7 @@
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/solvers/melp/keep_inside.h"
+#include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/operators.h"
 #include "lamella/solvers/melp/redistribution.h"
 #include "lamella/solvers/melp/refusals.h"
@@ -107,7 +108,7 @@ sim::StepReport MelpSolver::advance(double time_limit) {
                 steps_ + 1, dt, time_, fault));
         dt = shorter;
     }
-    const std::vector<Vec3> momentum = region_momenta(coarse_.velocity);
+    const std::vector<Vec3> momentum = region_momenta(coarse_.velocity), drift = region_drifts_now();
     filter_short_waves();
     give_to_fine(dt);
     move_coarse(dt, normal);
@@ -120,8 +121,9 @@ sim::StepReport MelpSolver::advance(double time_limit) {
     keep_spacing();
     time_ = dt >= time_limit - time_ ? time_limit : time_ + dt;
     follow_contacts(time_);
+    give_back_to_even_films(drift);
     update_liquid();
-    give_back(momentum);
+    give_back_to_liquid(momentum);
     follow_particle_volumes(dt);
     vent(dt);
     step_ = dt;
@@ -294,7 +296,7 @@ void MelpSolver::move_coarse(double dt, const NormalStep& step) {
     std::vector<Vec3> shift = options_.redistribution ? evening_shift(geometry_, coarse_, gas_.size(), spacing_)
                                                       : std::vector<Vec3>(coarse_.size());
     const std::vector<Tensor> slope = gradient(geometry_, coarse_.position, coarse_.velocity);
-    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+    for_each_particle(coarse_.size(), [&](std::size_t i) {
         const Vec3& n = geometry_.normal[i];
         const auto region = static_cast<std::size_t>(coarse_.region[i]);
         // Those of a film that has burst go with the liquid: edges move that far in a step. So do those of a film that
@@ -306,8 +308,8 @@ void MelpSolver::move_coarse(double dt, const NormalStep& step) {
         const Vec3 liquid = dt * (coarse_.velocity[i] - dot(coarse_.velocity[i], n) * n);
         coarse_.position[i] += along + (dt * step.mean[i]) * n + along_patch(geometry_.patch[i], shift[i]);
         coarse_.velocity[i] += slope[i] * (along + shift[i] - liquid);
-    }
-    coarse_.frame_normal = geometry_.normal;
+    });
+    coarse_.frame_normal = steady_normals(geometry_, coarse_.frame_normal);
     pull_back_spikes(dt);
 }
 
@@ -377,7 +379,7 @@ void MelpSolver::follow_contacts(double time) {
 }
 
 void MelpSolver::update_liquid() {
-    transfer_.emplace(coarse_, geometry_.normal, fine_, support_radius());
+    transfer_.emplace(coarse_, geometry_.normal, fine_, support_radius(), geometry_.images);
     films_ = films_of(geometry_, coarse_, transfer_->to_coarse(coarse_, fine_), even_, law_);
     // The thick edge of a hole is no film: surfactant that does not fit on it goes into its liquid.
     const double most = kMostOnEdges * law_.reference_concentration;

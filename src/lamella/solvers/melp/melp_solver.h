@@ -99,8 +99,11 @@ private:
     void keep_coarse_inside();
     void update_shape();
     void update_liquid();
-    void give_back(const std::vector<Vec3>& momentum);
-    void add_uniform(const std::vector<Vec3>& missing, std::span<const double> weight);
+    void give_back_to_liquid(const std::vector<Vec3>& momentum);
+    void give_back_to_even_films(const std::vector<Vec3>& drift);
+    std::vector<Vec3> region_drifts_now() const;
+    std::vector<std::ptrdiff_t> flying_clusters() const;
+    void add_along_normals(const std::vector<std::ptrdiff_t>& cluster, const std::vector<Vec3>& velocity);
     void follow_particle_volumes(double dt);
 
     std::vector<double> masses() const;

@@ -3,14 +3,15 @@
 #include "lamella/core/vec.h"
 #include "lamella/solvers/melp/kernel.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace lamella::melp {
 
-/// For each coarse particle the others within the kernel's reach, by rows, each row in ascending order; pairs are in
-/// both rows with the same bits. Built once per step, used by every stage.
+/// For each coarse particle the others within the kernel's reach, by rows, in the order of a search; pairs are in both
+/// rows with the same bits. Built once per step, used by every stage.
 struct Neighbors {
     std::vector<std::uint32_t> start;  ///< size + 1
     std::vector<std::uint32_t> index;
@@ -34,5 +35,8 @@ NeighborLists find_neighbors(std::span<const Vec3> position,
                              std::span<const Vec3> normal,
                              std::span<const std::int32_t> region,
                              double support_radius);
+
+/// Every two regions that have a pair in the list, ascending, the smaller one first.
+std::vector<std::array<std::int32_t, 2>> touching_regions(const Neighbors& other, std::span<const std::int32_t> region);
 
 }  // namespace lamella::melp

@@ -1,8 +1,8 @@
 #include "lamella/solvers/melp/normal_motion.h"
 
-#include "lamella/core/parallel.h"
 #include "lamella/solvers/melp/films.h"
 #include "lamella/solvers/melp/free_clusters.h"
+#include "lamella/solvers/melp/loops.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,15 +26,6 @@ std::size_t region_of(const CoarseParticles& coarse, std::size_t i) {
     return static_cast<std::size_t>(coarse.region[i]);
 }
 
-/// Strengths of the pairs: c_ij, of one region and of two. [N/m]
-struct Pairs {
-    std::vector<double> own;    ///< tau_i per particle
-    std::vector<double> same;   ///< per entry of neighbors.same
-    std::vector<double> other;  ///< per entry of neighbors.other
-    std::vector<double> image;  ///< per entry of images
-    std::vector<double> push;   ///< per entry of neighbors.other: of the springs that keep films apart, along normals
-};
-
 /// What keeps films that fly at each other from passing through, as a spring along the normals of a pair: it is
 /// strained where particle i stands deeper in the other bubble than films may. Gas alone presses joined films a quarter
 /// of a spacing into each other; those that have not joined keep a spacing of air between them.
@@ -42,6 +33,16 @@ struct Spring {
     double stiffness = 0.0;  ///< force along n_i over the velocity along n_i, or along n_j, times the time [N/m]
     double force = 0.0;      ///< along n_i, into the own bubble [N]
 };
+
+/// Strengths of the pairs: c_ij, of one region and of two. [N/m]
+struct Pairs {
+    std::vector<double> own;    ///< tau_i per particle
+    std::vector<double> same;   ///< per entry of neighbors.same
+    std::vector<double> other;  ///< per entry of neighbors.other
+    std::vector<double> image;  ///< per entry of images
+    std::vector<Spring> push;   ///< per entry of neighbors.other: what keeps films apart
+};
+
 constexpr double kStiff = 36.0;  // of these springs and of walls, tension / support radius^2
 
 Spring spring_between(const NormalProblem& p, std::size_t i, std::size_t k) {
@@ -90,7 +91,7 @@ Pairs pair_strengths(const NormalProblem& p) {
     pairs.image.resize(images.index.size());
     pairs.push.resize(other.index.size());
     std::vector<double> toward(a.size());  // sigma f'
-    parallel_for(a.size(), [&](std::size_t i) {
+    for_each_particle(a.size(), [&](std::size_t i) {
         double gamma = 0.0;
         for (std::size_t k = other.begin(i); k < other.end(i); ++k)
             gamma += (p.joined.empty() ? 1.0 : p.joined[k]) * a[other.index[k]] * other.weight[k];
@@ -98,7 +99,7 @@ Pairs pair_strengths(const NormalProblem& p) {
         pairs.own[i] = p.interface_tension[i] * c.own;
         toward[i] = p.interface_tension[i] * c.other;
     });
-    parallel_for(a.size(), [&](std::size_t i) {
+    for_each_particle(a.size(), [&](std::size_t i) {
         const auto strength = [&](const auto& list, std::size_t k, const std::vector<double>& tension) {
             const std::size_t j = list.index[k];
             return 0.5 * (tension[i] + tension[j]) * (a[i] * a[j]) * list.laplacian[k];
@@ -106,7 +107,7 @@ Pairs pair_strengths(const NormalProblem& p) {
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) pairs.same[k] = strength(same, k, pairs.own);
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
             pairs.other[k] = (p.joined.empty() ? 1.0 : p.joined[k]) * strength(other, k, toward);
-            pairs.push[k] = spring_between(p, i, k).stiffness;
+            pairs.push[k] = spring_between(p, i, k);
         }
         for (std::size_t k = images.begin(i); k < images.end(i); ++k) pairs.image[k] = strength(images, k, pairs.own);
     });
@@ -118,7 +119,7 @@ std::vector<double> forces(const NormalProblem& p, const Pairs& pairs, const std
     const Geometry& g = p.geometry;
     const std::vector<Vec3>& x = p.coarse.position;
     std::vector<double> force(g.size());
-    parallel_for(g.size(), [&](std::size_t i) {
+    for_each_particle(g.size(), [&](std::size_t i) {
         Vec3 pull;
         double push = p.gas[region_of(p.coarse, i)].gauge_pressure(p.outside_pressure) * gas_area[i];
         const Neighbors& same = g.neighbors.same;
@@ -126,7 +127,7 @@ std::vector<double> forces(const NormalProblem& p, const Pairs& pairs, const std
         const Neighbors& other = g.neighbors.other;
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
             pull += pairs.other[k] * (x[other.index[k]] - x[i]);
-            if (pairs.push[k] > 0.0) push -= spring_between(p, i, k).force;
+            push -= pairs.push[k].force;
         }
         const Images& images = g.images;
         for (std::size_t k = images.begin(i); k < images.end(i); ++k) pull += pairs.image[k] * (images.place[k] - x[i]);
@@ -143,15 +144,15 @@ public:
         const Neighbors& same = p.geometry.neighbors.same;
         const Neighbors& other = p.geometry.neighbors.other;
         const std::vector<Vec3>& n = p.geometry.normal;
-        parallel_for(diagonal_.size(), [&](std::size_t i) {
+        for_each_particle(diagonal_.size(), [&](std::size_t i) {
             // At a junction films fold: full stiffness there, none of it forgiven for moving as a whole.
             const bool free = other.index.empty();
             double sum = 0.0;
             for (std::size_t k = same.begin(i); k < same.end(i); ++k)
                 sum -= pairs.same[k] * (free ? dot(n[i], n[same.index[k]]) : 1.0);
             for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
-                sum -= pairs.other[k] + pairs.push[k];
-                other_[k] = pairs.other[k] * dot(n[i], n[other.index[k]]) - pairs.push[k];
+                sum -= pairs.other[k] + pairs.push[k].stiffness;
+                other_[k] = pairs.other[k] * dot(n[i], n[other.index[k]]) - pairs.push[k].stiffness;
             }
             const Images& images = p.geometry.images;
             for (std::size_t k = images.begin(i); k < images.end(i); ++k)
@@ -194,9 +195,7 @@ private:
 
 /// sum of a v over each region: how fast its gas grows [m^3/s].
 std::vector<double> growth(const NormalProblem& p, const std::vector<double>& gas_area, const std::vector<double>& v) {
-    std::vector<double> sum(p.gas.size(), 0.0);
-    for (std::size_t i = 0; i < v.size(); ++i) sum[region_of(p.coarse, i)] += gas_area[i] * v[i];
-    return sum;
+    return sum_over_regions(p.coarse.region, p.gas.size(), [&](std::size_t i) { return gas_area[i] * v[i]; });
 }
 
 /// What dampens CG's errors: the diagonal of masses and films with the gases, D + sum_r g_r b_r b_r^T, inverted exactly
@@ -210,17 +209,17 @@ public:
                       const std::vector<double>& gas,
                       const std::vector<double>& scale)
         : p_(p), gas_area_(gas_area), scale_(scale), share_(gas.size(), 0.0) {
-        std::vector<double> soft(gas.size(), 0.0);  // b D^-1 b
-        for (std::size_t i = 0; i < scale.size(); ++i)
-            soft[region_of(p.coarse, i)] += gas_area[i] * gas_area[i] * scale[i];
+        const std::vector<double> soft =  // b D^-1 b
+            sum_over_regions(p.coarse.region, gas.size(),
+                             [&](std::size_t i) { return gas_area[i] * gas_area[i] * scale[i]; });
         for (std::size_t r = 0; r < gas.size(); ++r) share_[r] = gas[r] / (1.0 + gas[r] * soft[r]);
     }
 
     void operator()(const std::vector<double>& u, std::vector<double>& v) const {
         v.resize(u.size());
-        parallel_for(u.size(), [&](std::size_t i) { v[i] = scale_[i] * u[i]; });
+        for_each_particle(u.size(), [&](std::size_t i) { v[i] = scale_[i] * u[i]; });
         const std::vector<double> grown = growth(p_, gas_area_, v);
-        parallel_for(u.size(), [&](std::size_t i) {
+        for_each_particle(u.size(), [&](std::size_t i) {
             const std::size_t r = region_of(p_.coarse, i);
             v[i] -= share_[r] * grown[r] * scale_[i] * gas_area_[i];
         });
@@ -254,7 +253,7 @@ NormalStep move_along_normals(const NormalProblem& p) {
     const std::vector<Vec3> flight = p.shape_damping > 0.0
                                          ? region_drifts(p.geometry, p.coarse, p.velocity, p.gas.size())
                                          : std::vector<Vec3>(p.gas.size());
-    parallel_for(count, [&](std::size_t i) {
+    for_each_particle(count, [&](std::size_t i) {
         const Spring walls = spring_of_walls(p, i);
         const Vec3 outer = p.external[i] + (p.shape_damping * p.mass[i]) * flight[region_of(p.coarse, i)];
         inertia[i] = p.mass[i] * (1.0 + p.dt * (p.damping + p.shape_damping)) + p.dt * p.dt * walls.stiffness;
@@ -265,7 +264,7 @@ NormalStep move_along_normals(const NormalProblem& p) {
     const auto apply = [&](const std::vector<double>& v, std::vector<double>& y) {
         y.resize(count);
         const std::vector<double> grown = growth(p, gas_area, v);
-        parallel_for(count, [&](std::size_t i) {
+        for_each_particle(count, [&](std::size_t i) {
             const std::size_t r = region_of(p.coarse, i);
             y[i] = inertia[i] * v[i] - implicit * stiffness.apply(v, i) + gas[r] * grown[r] * gas_area[i];
         });

@@ -1,6 +1,7 @@
 #include "lamella/solvers/melp/operators.h"
 
 #include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/loops.h"
 
 namespace lamella::melp {
 namespace {
@@ -102,6 +103,23 @@ std::vector<Vec3> roughness(const Geometry& g, std::span<const Vec3> w, Beyond b
     };
     add_over_images(g, [&](std::size_t i, std::size_t k) {
         result[i] += (g.area[g.images.index[k]] * g.images.weight[k]) * (w[i] - picture(k));
+    });
+    return result;
+}
+
+std::vector<Vec3> steady_normals(const Geometry& g, std::span<const Vec3> last) {
+    auto result = sum_over_neighbors<Vec3>(g, [&](Vec3& sum, std::size_t, std::size_t j, std::size_t k) {
+        sum += (g.area[j] * g.neighbors.same.weight[k]) * g.normal[j];
+    });
+    add_over_images(g, [&](std::size_t i, std::size_t k) {
+        result[i] += (g.area[g.images.index[k]] * g.images.weight[k]) * g.images.normal[k];
+    });
+    const double own = g.neighbors.same.kernel.value(0.0);
+    for_each_particle(result.size(), [&](std::size_t i) {
+        result[i] += (g.area[i] * own) * g.normal[i];
+        const Vec3 between = result[i] + norm(result[i]) * last[i];
+        const double length = norm(between);
+        result[i] = length > 0.0 ? between / length : last[i];
     });
     return result;
 }

@@ -25,18 +25,13 @@ public:
         });
     }
 
-    /// Calls visit(index, squared distance) for every point nearer to `center` than `radius`.
-    template <class Visit>
-    void for_each_within(const Vec3& center, double radius, Visit&& visit) const {
-        if (!grid_) return;
-        const double most = radius * radius;
-        grid_->for_each_range(center - low_, radius, [&](std::uint32_t begin, std::uint32_t end) {
-            for (std::uint32_t k = begin; k < end; ++k) {
-                const double square = squared_norm(sorted_[k] - center);
-                if (square < most) visit(grid_->order()[k], square);
-            }
-        });
-    }
+    /// Points nearer to a place than a radius. Its memory serves many searches.
+    struct Found {
+        std::size_t count = 0;
+        std::vector<std::uint32_t> index;
+        std::vector<double> square;  ///< distance [m^2]
+    };
+    void find_within(const Vec3& center, double radius, Found& found) const;
 
 private:
     Vec3 low_;                  ///< lower corner of the points

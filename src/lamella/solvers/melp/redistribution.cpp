@@ -1,7 +1,7 @@
 #include "lamella/solvers/melp/redistribution.h"
 
-#include "lamella/core/parallel.h"
 #include "lamella/linalg/conjugate_gradient.h"
+#include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/operators.h"
 
 #include <algorithm>
@@ -17,16 +17,14 @@ constexpr double kShort = 0.3;     // spacing^2
 
 /// Density over the region's mean, minus one.
 std::vector<double> excess(const Geometry& g, const CoarseParticles& coarse, std::size_t regions) {
-    std::vector<double> sum(regions, 0.0), particles(regions, 0.0);
-    for (std::size_t i = 0; i < g.size(); ++i) {
-        sum[static_cast<std::size_t>(coarse.region[i])] += 1.0 / g.area[i];
-        particles[static_cast<std::size_t>(coarse.region[i])] += 1.0;
-    }
+    const std::vector<double> sum =
+        sum_over_regions(coarse.region, regions, [&](std::size_t i) { return 1.0 / g.area[i]; });
+    const std::vector<double> particles = sum_over_regions(coarse.region, regions, [](std::size_t) { return 1.0; });
     std::vector<double> result(g.size());
-    for (std::size_t i = 0; i < g.size(); ++i) {
+    for_each_particle(g.size(), [&](std::size_t i) {
         const auto r = static_cast<std::size_t>(coarse.region[i]);
         result[i] = particles[r] / (sum[r] * g.area[i]) - 1.0;
-    }
+    });
     return result;
 }
 
@@ -34,7 +32,7 @@ std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, do
     const Neighbors& same = g.neighbors.same;
     const std::size_t count = g.size();
     std::vector<double> right(count), scale(count), diagonal(count), pair(same.index.size());
-    parallel_for(count, [&](std::size_t i) {
+    for_each_particle(count, [&](std::size_t i) {
         double sum = 0.0;
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
             pair[k] = g.area[same.index[k]] * same.laplacian[k];
@@ -46,7 +44,7 @@ std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, do
     });
     const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
         y.resize(count);
-        parallel_for(count, [&](std::size_t i) {
+        for_each_particle(count, [&](std::size_t i) {
             double sum = 0.0;
             for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum += pair[k] * x[same.index[k]];
             y[i] = diagonal[i] * x[i] - reach * g.area[i] * sum;
@@ -64,19 +62,22 @@ std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, do
 std::vector<Vec3> evening_shift(const Geometry& g, const CoarseParticles& coarse, std::size_t regions, double spacing) {
     const double reach = kReach * spacing * spacing, farthest = kFarthest * spacing;
     std::vector<Vec3> shift = gradient(g, coarse.position, smoothed(g, excess(g, coarse, regions), reach));
-    double longest = 0.0;
-    for (Vec3& d : shift) {
-        d *= -reach;
-        longest = std::max(longest, norm(d));
-    }
-    const double factor = longest > farthest ? farthest / longest : 1.0;
-    const std::vector<Vec3> uneven = unevenness(g, coarse.position);
+    // Of each film on its own: one crowded spot would hold back all of a foam.
+    std::vector<double> longest(regions, 0.0);
     for (std::size_t i = 0; i < shift.size(); ++i) {
+        shift[i] *= -reach;
+        double& most = longest[static_cast<std::size_t>(coarse.region[i])];
+        most = std::max(most, norm(shift[i]));
+    }
+    const std::vector<Vec3> uneven = unevenness(g, coarse.position);
+    for_each_particle(shift.size(), [&](std::size_t i) {
         Vec3 away = (-kShort * spacing * spacing) * uneven[i];
         away -= dot(away, g.normal[i]) * g.normal[i];
         const double length = norm(away);
-        shift[i] = factor * shift[i] + (length > farthest ? farthest / length : 1.0) * away;
-    }
+        const double most = longest[static_cast<std::size_t>(coarse.region[i])];
+        shift[i] =
+            (most > farthest ? farthest / most : 1.0) * shift[i] + (length > farthest ? farthest / length : 1.0) * away;
+    });
     return shift;
 }
 

@@ -1,6 +1,7 @@
 #include "lamella/solvers/melp/surface.h"
 
 #include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/voronoi.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,6 @@ namespace lamella::melp {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
-constexpr std::uint32_t kNobody = 0xffffffffU;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 /// The same triangle with its smallest corner first.
@@ -20,70 +20,11 @@ Triangle turned(Triangle t) {
     return t;
 }
 
-/// A corner of a Voronoi cell in the tangent plane of its particle.
-struct Corner {
-    double u, v;
-    std::uint32_t next;  // whose bisector the side after this corner lies on
-};
-
-/// The Voronoi cell of particle i among its neighbors, laid into its tangent plane: it is cut out of a large square by
-/// the bisectors of one neighbor after the other.
-std::vector<Corner> voronoi_cell(std::span<const Vec3> position,
-                                 const Vec3& normal,
-                                 const Neighbors& same,
-                                 std::size_t i) {
-    const double far = same.kernel.support_radius;
-    std::vector<Corner> cell{{-far, -far, kNobody}, {far, -far, kNobody}, {far, far, kNobody}, {-far, far, kNobody}},
-        cut;
-    const Frame frame = frame_of(normal);
-    double farthest = 2.0 * far * far;  // corner, squared
-    const auto cut_off = [&](std::uint32_t j, double u, double v) {
-        const double half = 0.5 * (u * u + v * v);
-        if (half == 0.0 || half > 2.0 * farthest) return;  // its bisector passes beyond all corners
-        const auto beyond = [&](const Corner& c) { return c.u * u + c.v * v - half; };
-        if (std::none_of(cell.begin(), cell.end(), [&](const Corner& c) { return beyond(c) > 0.0; })) return;
-        cut.clear();
-        for (std::size_t c = 0; c < cell.size(); ++c) {
-            const Corner& a = cell[c];
-            const Corner& b = cell[(c + 1) % cell.size()];
-            const double at_a = beyond(a), at_b = beyond(b);
-            const auto crossing = [&](std::uint32_t next) {
-                const double s = at_a / (at_a - at_b);
-                return Corner{a.u + s * (b.u - a.u), a.v + s * (b.v - a.v), next};
-            };
-            if (at_a <= 0.0) cut.push_back(a);
-            if (at_a <= 0.0 && at_b > 0.0) cut.push_back(crossing(j));
-            if (at_a > 0.0 && at_b <= 0.0) cut.push_back(crossing(a.next));
-        }
-        cell.swap(cut);
-        farthest = 0.0;
-        for (const Corner& c : cell) farthest = std::max(farthest, c.u * c.u + c.v * c.v);
-    };
-    // Near ones first: few of the others touch what they leave.
-    const double near = 0.5 * far;
-    for (const bool nearer : {true, false})
-        for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
-            const Vec3 d = position[same.index[k]] - position[i];
-            if ((squared_norm(d) < near * near) == nearer) cut_off(same.index[k], dot(frame.e1, d), dot(frame.e2, d));
-        }
-    return cell;
-}
-
-/// The neighbors that the cell touches, in turn.
-std::vector<std::uint32_t> delaunay_ring(std::span<const Vec3> position,
-                                         const Vec3& normal,
-                                         const Neighbors& same,
-                                         std::size_t i) {
-    std::vector<std::uint32_t> ring;
-    for (const Corner& c : voronoi_cell(position, normal, same, i)) ring.push_back(c.next);
-    return ring;
-}
-
 /// Triangles around particle i, nobody's sides left out.
 void append_star(std::uint32_t i, const std::vector<std::uint32_t>& ring, std::vector<Triangle>& found) {
     for (std::size_t k = 0; k < ring.size(); ++k) {
         const std::uint32_t a = ring[k], b = ring[(k + 1) % ring.size()];
-        if (a != kNobody && b != kNobody && a != b) found.push_back(turned({i, a, b}));
+        if (a != VoronoiCell::kNobody && b != VoronoiCell::kNobody && a != b) found.push_back(turned({i, a, b}));
     }
 }
 
@@ -137,8 +78,11 @@ Triangles surface_triangles(const CoarseParticles& coarse, const Geometry& geome
     const std::size_t count = coarse.size();
     std::vector<std::vector<std::uint32_t>> ring(count);
     parallel_blocks(count, 256, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i)
-            ring[i] = delaunay_ring(coarse.position, geometry.normal[i], geometry.neighbors.same, i);
+        VoronoiCell cell;
+        for (std::size_t i = first; i < last; ++i) {
+            cell.build(coarse.position, geometry.normal[i], geometry.neighbors.same, i);
+            for (const VoronoiCell::Corner& c : cell.corners()) ring[i].push_back(c.next);
+        }
     });
     std::vector<Triangle> found;
     for (std::size_t i = 0; i < count; ++i) append_star(static_cast<std::uint32_t>(i), ring[i], found);
@@ -154,32 +98,6 @@ Triangles surface_triangles(const CoarseParticles& coarse, const Geometry& geome
     constexpr std::size_t kLongestHole = 8;
     builder.close_holes(kLongestHole);
     return builder.take();
-}
-
-double star_volume(const CoarseParticles& coarse, const Geometry& geometry, std::size_t i, const Vec3& center) {
-    const std::vector<std::uint32_t> ring =
-        delaunay_ring(coarse.position, geometry.normal[i], geometry.neighbors.same, i);
-    const std::vector<Vec3>&x = coarse.position, &n = geometry.normal;
-    double sum = 0.0;
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-        const std::uint32_t a = ring[k], b = ring[(k + 1) % ring.size()];
-        if (a == kNobody || b == kNobody || a == b) continue;
-        const Vec3 area = 0.5 * cross(x[a] - x[i], x[b] - x[i]);
-        const double bulge =
-            dot(n[a] - n[i], x[a] - x[i]) + dot(n[b] - n[a], x[b] - x[a]) + dot(n[i] - n[b], x[i] - x[b]);
-        sum += dot(x[i] - center, area) / 3.0 + norm(area) * bulge / 24.0;
-    }
-    return sum / 3.0;
-}
-
-double cell_area(const CoarseParticles& coarse, const Geometry& geometry, std::size_t i) {
-    const std::vector<Corner> cell = voronoi_cell(coarse.position, geometry.normal[i], geometry.neighbors.same, i);
-    double sum = 0.0;
-    for (std::size_t k = 0; k < cell.size(); ++k) {
-        const Corner& b = cell[(k + 1) % cell.size()];
-        sum += cell[k].u * b.v - cell[k].v * b.u;
-    }
-    return 0.5 * sum;
 }
 
 std::size_t open_edges(const Triangles& triangles) {

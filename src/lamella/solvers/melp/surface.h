@@ -23,14 +23,4 @@ Triangles surface_triangles(const CoarseParticles& coarse, const Geometry& geome
 /// Edges that belong to one triangle only.
 std::size_t open_edges(const Triangles& triangles);
 
-/// A third of the volume between `center` and the triangles that particle i makes with the neighbors its Voronoi cell
-/// touches: summed over a closed film every triangle counts once [m^3]. Triangles bulge as their corners' normals say:
-/// a quadratic with the curvatures kappa along the edges stands area * sum kappa length^2 / 24 above its corners'
-/// plane. Right at folds too, where areas from kernels are not.
-double star_volume(const CoarseParticles& coarse, const Geometry& geometry, std::size_t i, const Vec3& center);
-
-/// Area of the Voronoi cell of particle i among its neighbors, in its tangent plane [m^2]: how fast the volume under it
-/// grows along its normal. Right at folds too, and steady when triangles change.
-double cell_area(const CoarseParticles& coarse, const Geometry& geometry, std::size_t i);
-
 }  // namespace lamella::melp

@@ -1,6 +1,6 @@
 #include "lamella/solvers/melp/surfactant.h"
 
-#include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/operators.h"
 
 namespace lamella::melp {
@@ -18,7 +18,7 @@ SurfactantStep solve_surfactant(const Geometry& geometry,
     const auto beta = [&](std::size_t i) { return 2.0 * law.thermal_energy() / inertia[i]; };
     std::vector<double> coupling(same.index.size()), diagonal(count), right(count), scale(count);
     const std::vector<double> stretch = divergence(geometry, position, velocity);
-    parallel_for(count, [&](std::size_t i) {
+    for_each_particle(count, [&](std::size_t i) {
         const double a = geometry.area[i];
         diagonal[i] = a / films.concentration[i];
         right[i] = a * (1.0 - dt * stretch[i]);
@@ -32,7 +32,7 @@ SurfactantStep solve_surfactant(const Geometry& geometry,
     });
     const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
         y.resize(count);
-        parallel_for(count, [&](std::size_t i) {
+        for_each_particle(count, [&](std::size_t i) {
             double sum = diagonal[i] * x[i];
             for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum -= coupling[k] * x[same.index[k]];
             y[i] = sum;

@@ -44,8 +44,17 @@ inline double spline(double s) {
 Transfer::Transfer(const CoarseParticles& coarse,
                    std::span<const Vec3> normal,
                    const FineParticles& fine,
-                   double support_radius)
+                   double support_radius,
+                   const Images& images)
     : support_radius_(support_radius), inverse_sum_(fine.size(), 0.0) {
+    for (std::size_t m = 0; m < images.mirrors.size(); ++m) pictures_.push_back({images.source[m], images.mirrors[m]});
+    const std::vector<Vec3> place = places_with_pictures(coarse.position);
+    std::vector<Vec3> facing(normal.begin(), normal.end());
+    std::vector<std::int32_t> region = coarse.region;
+    for (const Picture& picture : pictures_) {
+        facing.push_back(picture.mirror.normal(normal[picture.source]));
+        region.push_back(coarse.region[picture.source]);
+    }
     for (std::size_t first = 0; first < fine.size();) {
         Chunk chunk;
         while (chunk.block.size() < kBlocks && first < fine.size() &&
@@ -58,22 +67,21 @@ Transfer::Transfer(const CoarseParticles& coarse,
         }
         chunks_.push_back(std::move(chunk));
     }
-    const PointGrid grid(coarse.position, support_radius);
+    const PointGrid grid(place, support_radius);
     parallel_blocks(chunks_.size(), 1, [&](std::size_t c, std::size_t) {
         Chunk& chunk = chunks_[c];
         const std::size_t first = chunk.block.front().first, last = chunk.block.back().first + chunk.block.back().count;
         const Bounds box = bounds_of(std::span(fine.position).subspan(first, last - first));
         const double reach = support_radius + 0.5 * norm(box.high - box.low);
         grid.for_each_near(0.5 * (box.low + box.high), reach, [&](std::uint32_t e) {
-            if (coarse.region[e] == fine.region[first] &&
-                squared_distance(box, coarse.position[e]) < support_radius * support_radius)
+            if (region[e] == fine.region[first] && squared_distance(box, place[e]) < support_radius * support_radius)
                 chunk.coarse.push_back(e);
         });
         std::sort(chunk.coarse.begin(), chunk.coarse.end());
-        find(chunk, coarse, normal, fine);
+        find(chunk, place, facing, fine);
     });
 
-    places_start_.assign(coarse.size() + 1, 0);
+    places_start_.assign(place.size() + 1, 0);
     for (const Chunk& chunk : chunks_)
         for (const std::uint32_t e : chunk.coarse) ++places_start_[e + 1];
     std::partial_sum(places_start_.begin(), places_start_.end(), places_start_.begin());
@@ -84,11 +92,19 @@ Transfer::Transfer(const CoarseParticles& coarse,
             places_[next[chunks_[c].coarse[k]]++] = {static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(k)};
 }
 
+/// Of coarse particles, and behind them of their pictures [m].
+std::vector<Vec3> Transfer::places_with_pictures(std::span<const Vec3> position) const {
+    std::vector<Vec3> place(position.begin(), position.end());
+    for (const Picture& picture : pictures_) place.push_back(picture.mirror.place(position[picture.source]));
+    return place;
+}
+
 void Transfer::find(Chunk& chunk,
-                    const CoarseParticles& coarse,
+                    std::span<const Vec3> position,
                     std::span<const Vec3> normal,
                     const FineParticles& fine) {
     const double scale = 3.0 / support_radius_;
+    const std::size_t coarse_count = position.size() - pictures_.size();
     std::array<Lanes, 3> x, n;
     for (Block& block : chunk.block) {
         block.candidates = static_cast<std::uint32_t>(chunk.candidate.size());
@@ -98,9 +114,12 @@ void Transfer::find(Chunk& chunk,
         const Bounds box = bounds_of(std::span(fine.position).subspan(block.first, block.count));
         Lanes sum{};
         for (std::size_t k = 0; k < chunk.coarse.size(); ++k) {
-            const Vec3& y = coarse.position[chunk.coarse[k]];
+            const Vec3& y = position[chunk.coarse[k]];
             if (squared_distance(box, y) >= support_radius_ * support_radius_) continue;
             const Vec3& m = normal[chunk.coarse[k]];
+            const double root =
+                chunk.coarse[k] < coarse_count ? 1.0 : pictures_[chunk.coarse[k] - coarse_count].mirror.root;
+            const double narrowed = root * root;
             chunk.candidate.push_back(static_cast<std::uint32_t>(k));
             const std::size_t row = chunk.weight.size();
             chunk.weight.resize(row + kLanes);
@@ -109,7 +128,7 @@ void Transfer::find(Chunk& chunk,
                 const double dx = x[0][l] - y[0], dy = x[1][l] - y[1], dz = x[2][l] - y[2];
                 const double w = spline(scale * std::sqrt(dx * dx + dy * dy + dz * dz));
                 const double cosine = n[0][l] * m[0] + n[1][l] * m[1] + n[2][l] * m[2];
-                weight[l] = static_cast<float>(cosine > kAgreeing ? w : 0.0);
+                weight[l] = static_cast<float>(cosine > kAgreeing ? narrowed * w : 0.0);
                 sum[l] += static_cast<double>(weight[l]);
             }
         }
@@ -118,10 +137,29 @@ void Transfer::find(Chunk& chunk,
     }
 }
 
+/// What pictures have received is their particles', momentum turned back.
+void Transfer::hand_in_pictures(Gathered& gathered) const {
+    const std::size_t count = gathered.liquid_volume.size() - pictures_.size();
+    for (std::size_t m = 0; m < pictures_.size(); ++m) {
+        const auto& [source, mirror] = pictures_[m];
+        const double volume = gathered.liquid_volume[count + m];
+        gathered.liquid_volume[source] += volume;
+        gathered.surfactant[source] += gathered.surfactant[count + m];
+        gathered.seen_volume[source] += gathered.seen_volume[count + m];
+        const Vec3 w = gathered.momentum[count + m] - volume * mirror.drift;
+        gathered.momentum[source] += w[0] * mirror.map[0] + w[1] * mirror.map[1] + w[2] * mirror.map[2];
+    }
+    gathered.liquid_volume.resize(count);
+    gathered.surfactant.resize(count);
+    gathered.seen_volume.resize(count);
+    gathered.momentum.resize(count);
+}
+
 Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles& fine) const {
     // What a fine particle gives, all times its weight: volume, surfactant, seen volume, momentum at the chunk's origin
     // and its gradient (9), and one spare to fill two rows of eight.
     constexpr std::size_t kGiven = 16, kKept = 6;
+    const std::vector<Vec3> place = places_with_pictures(coarse.position);
     std::vector<std::vector<double>> received(chunks_.size());  // kKept per coarse particle of the chunk
     parallel_blocks(chunks_.size(), 1, [&](std::size_t c, std::size_t) {
         const Chunk& chunk = chunks_[c];
@@ -151,7 +189,7 @@ Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles&
         }
         received[c].resize(kKept * chunk.coarse.size());
         for (std::size_t k = 0; k < chunk.coarse.size(); ++k) {
-            const Vec3 d = coarse.position[chunk.coarse[k]] - origin;
+            const Vec3 d = place[chunk.coarse[k]] - origin;
             double* to = &received[c][kKept * k];
             for (std::size_t q = 0; q < 3; ++q) to[q] = sum[k][q];
             for (std::size_t q = 0; q < 3; ++q)
@@ -161,11 +199,11 @@ Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles&
     });
 
     Gathered gathered;
-    gathered.liquid_volume.resize(coarse.size());
-    gathered.surfactant.resize(coarse.size());
-    gathered.seen_volume.resize(coarse.size());
-    gathered.momentum.resize(coarse.size());
-    parallel_for(coarse.size(), [&](std::size_t e) {
+    gathered.liquid_volume.resize(place.size());
+    gathered.surfactant.resize(place.size());
+    gathered.seen_volume.resize(place.size());
+    gathered.momentum.resize(place.size());
+    parallel_for(place.size(), [&](std::size_t e) {
         std::array<double, kKept> sum{};
         for (std::size_t k = places_start_[e]; k < places_start_[e + 1]; ++k)
             for (std::size_t q = 0; q < kKept; ++q) sum[q] += received[places_[k][0]][kKept * places_[k][1] + q];
@@ -174,6 +212,7 @@ Gathered Transfer::to_coarse(const CoarseParticles& coarse, const FineParticles&
         gathered.seen_volume[e] = sum[2];
         gathered.momentum[e] = {{sum[3], sum[4], sum[5]}};
     });
+    hand_in_pictures(gathered);
     return gathered;
 }
 
@@ -209,6 +248,15 @@ void Transfer::to_fine(const CoarseValues& from, double rate, FineParticles& fin
     // Sums over the coarse particles, a row of lanes each: d (3), u (3), d d (6), u d (9), eta, seen eta.
     constexpr std::size_t kSums = 23;
     const double floor = 1e-4 * support_radius_ * support_radius_;
+    const std::vector<Vec3> place = places_with_pictures(from.position);
+    std::vector<Vec3> velocity(from.velocity.begin(), from.velocity.end());
+    std::vector<double> thickness(from.thickness.begin(), from.thickness.end());
+    std::vector<double> seen_thickness(from.seen_thickness.begin(), from.seen_thickness.end());
+    for (const auto& [source, mirror] : pictures_) {
+        velocity.push_back(mirror.velocity(from.velocity[source]));
+        thickness.push_back(from.thickness[source]);
+        seen_thickness.push_back(from.seen_thickness[source]);
+    }
     parallel_blocks(chunks_.size(), 1, [&](std::size_t c, std::size_t) {
         const Chunk& chunk = chunks_[c];
         std::array<Lanes, 3> x;
@@ -218,8 +266,8 @@ void Transfer::to_fine(const CoarseValues& from, double rate, FineParticles& fin
             for (std::size_t row = 0; row < block.rows; ++row) {
                 const float* weight = &chunk.weight[(block.weights + row) * kLanes];
                 const std::uint32_t e = chunk.coarse[chunk.candidate[block.candidates + row]];
-                const Vec3 y = from.position[e], u = from.velocity[e];
-                const double eta = from.thickness[e], seen = from.seen_thickness[e];
+                const Vec3 y = place[e], u = velocity[e];
+                const double eta = thickness[e], seen = seen_thickness[e];
                 for (std::size_t l = 0; l < kLanes; ++l) {
                     const double w = static_cast<double>(weight[l]);
                     const double d0 = y[0] - x[0][l], d1 = y[1] - x[1][l], d2 = y[2] - x[2][l];
@@ -278,13 +326,16 @@ void Transfer::project(std::span<const Patch> patch, std::span<const Vec3> norma
         for (const Block& block : chunk.block) {
             load<kLanes>(fine.position, block.first, block.count, x);
             std::array<Lanes, 3> shift{}, blended{};
+            Lanes all{};
             for (std::size_t row = 0; row < block.rows; ++row) {
                 const float* weight = &chunk.weight[(block.weights + row) * kLanes];
                 const std::uint32_t e = chunk.coarse[chunk.candidate[block.candidates + row]];
+                if (e >= patch.size()) continue;  // a picture: the film is before it
                 const Patch q = patch[e];
                 const Vec3 n = normal[e];
                 for (std::size_t l = 0; l < kLanes; ++l) {
                     const double w = static_cast<double>(weight[l]);
+                    all[l] += w;
                     const double above = w * q.above({{x[0][l], x[1][l], x[2][l]}});
                     for (std::size_t k = 0; k < 3; ++k) {
                         shift[k][l] += above * q.frame.normal[k];
@@ -296,8 +347,8 @@ void Transfer::project(std::span<const Patch> patch, std::span<const Vec3> norma
                 const std::size_t p = block.first + l;
                 const Vec3 n{{blended[0][l], blended[1][l], blended[2][l]}};
                 const double length = norm(n);
-                if (inverse_sum_[p] == 0.0 || length == 0.0) continue;
-                fine.position[p] -= inverse_sum_[p] * Vec3{{shift[0][l], shift[1][l], shift[2][l]}};
+                if (all[l] == 0.0 || length == 0.0) continue;
+                fine.position[p] -= (1.0 / all[l]) * Vec3{{shift[0][l], shift[1][l], shift[2][l]}};
                 fine.normal[p] = n / length;
             }
         }

@@ -31,7 +31,8 @@ struct CoarseValues {
 ///   w_LE = W(|x_L - x_E|) / alpha_L,   alpha_L = sum_E W(|x_L - x_E|),
 ///
 /// so that sum_E w_LE = 1 for each fine particle: what they give away is what arrives. Pairs whose normals disagree
-/// have none. [method sheet 5, 16.5]
+/// have none. [method sheet 5, 16.5] Pictures of coarse particles beyond rims count among them: they give the velocity
+/// of the film there, so that liquid does not flow through rims, and hand what they receive to their particles.
 ///
 /// Fine particles that lie next to each other in memory lie next to each other in space (sort_fine_particles). Sixteen
 /// of them make a block, which keeps one dense matrix of weights with all coarse particles that any of them sees: all
@@ -43,11 +44,12 @@ public:
     Transfer(const CoarseParticles& coarse,
              std::span<const Vec3> normal,
              const FineParticles& fine,
-             double support_radius);
+             double support_radius,
+             const Images& images = {});
 
     /// Sums over the fine particles; each gives a velocity that is linear in space:
     ///   p_E = sum_L w_LE V_L (u_L + C_L (x_E - x_L)).
-    /// Totals of volume, surfactant and momentum are kept to rounding.
+    /// Totals of volume, surfactant and, without rims, momentum are kept to rounding.
     Gathered to_coarse(const CoarseParticles& coarse, const FineParticles& fine) const;
 
     /// Sets velocity and gradient of the fine particles from centered moments [method sheet 5 R, 16.5]:
@@ -87,12 +89,21 @@ private:
         std::vector<float> weight;             // W * r^2 per row and lane, 0 beyond the reach
     };
 
-    void find(Chunk& chunk, const CoarseParticles& coarse, std::span<const Vec3> normal, const FineParticles& fine);
+    /// A picture of a coarse particle beyond a rim: it stands behind these in the lists.
+    struct Picture {
+        std::uint32_t source;
+        Mirror mirror;
+    };
+
+    void find(Chunk& chunk, std::span<const Vec3> position, std::span<const Vec3> normal, const FineParticles& fine);
+    void hand_in_pictures(Gathered& gathered) const;
+    std::vector<Vec3> places_with_pictures(std::span<const Vec3> position) const;
 
     double support_radius_;
+    std::vector<Picture> pictures_;
     std::vector<Chunk> chunks_;
     std::vector<double> inverse_sum_;  // 1 / alpha per fine particle, 0 for strays
-    // For each coarse particle where it stands in the chunks: chunk and place.
+    // For each coarse particle, and behind them for each picture: where it stands in the chunks, chunk and place.
     std::vector<std::uint32_t> places_start_;
     std::vector<std::array<std::uint32_t, 2>> places_;
 };

@@ -1,7 +1,6 @@
 #include "lamella/solvers/melp/volumes.h"
 
-#include "lamella/core/parallel.h"
-#include "lamella/solvers/melp/surface.h"
+#include "lamella/solvers/melp/loops.h"
 
 namespace lamella::melp {
 namespace {
@@ -41,12 +40,13 @@ std::vector<double> particle_volumes(const CoarseParticles& coarse,
     for (std::size_t r = 0; r < gas.size(); ++r) center[r] = center[r] / area[r];
     for (const RimPiece& piece : rims) center[static_cast<std::size_t>(piece.region)] = piece.a;  // in the plate
     std::vector<double> share(coarse.size());
-    parallel_for(coarse.size(), [&](std::size_t i) {
+    for_each_particle(coarse.size(), [&](std::size_t i) {
         const Vec3& o = center[static_cast<std::size_t>(coarse.region[i])];
         const Neighbors& other = geometry.neighbors.other;
-        share[i] = other.begin(i) == other.end(i)
-                       ? geometry.area[i] * dot(coarse.position[i] - o, geometry.normal[i]) / 3.0
-                       : star_volume(coarse, geometry, i, o) - 0.5 * overlap_volume(coarse, geometry, joined, i);
+        share[i] =
+            other.begin(i) == other.end(i)
+                ? geometry.area[i] * dot(coarse.position[i] - o, geometry.normal[i]) / 3.0
+                : geometry.star[i].volume(coarse.position[i], o) - 0.5 * overlap_volume(coarse, geometry, joined, i);
     });
     for (std::size_t i = 0; i < coarse.size(); ++i) volume[static_cast<std::size_t>(coarse.region[i])] += share[i];
     for (std::size_t r = 0; r < gas.size(); ++r) volume[r] *= gas[r].calibration;
