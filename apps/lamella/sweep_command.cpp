@@ -182,8 +182,13 @@ int run_command(const SweepOptions& options) {
     if (task.ranks > 1 && options.device != "cpu")
         throw InputError("runs of several processes (task.ranks) compute on CPUs only; use --device cpu");
     const int jobs = options.jobs > 0 ? options.jobs : std::max(cores / (task.threads * task.ranks), 1);
-    return jobs == 1 || !options.task.empty() ? work_here(folder, tasks, options)
-                                              : work_in_pool(folder, tasks, options, jobs);
+    const int code = jobs == 1 || !options.task.empty() ? work_here(folder, tasks, options)
+                                                        : work_in_pool(folder, tasks, options, jobs);
+    if (code != kDone) return code;
+    // Some may have failed before, or all their workers have died.
+    States states(folder);
+    states.look(tasks);
+    return states.count(tasks, TaskState::kFailed) > 0 ? kFailed : kDone;
 }
 
 void status_command(const SweepOptions& options) {

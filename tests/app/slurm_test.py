@@ -11,7 +11,7 @@ import tempfile
 import time
 import unittest
 
-from program import PROGRAM, ProgramTest, lamella
+from program import PROGRAM, ProgramTest, lamella, results
 
 SKIPPED = 77
 TOOLS = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scancel", "scontrol", "sinfo")
@@ -201,6 +201,26 @@ class SweepOnSlurm(ProgramTest):
         self.assertTrue(self.slurm.wait_until(self.slurm.queue_is_empty, 300))
         self.assert_all_done(there)
         self.assert_same_table(here, there)
+
+    def test_runs_one_foam_on_processes_that_srun_starts(self):
+        if "mpi" not in json.loads(lamella("version", "--json").stdout)["parts"]:
+            self.skipTest("a build without MPI")
+        known = self.slurm.run("srun", "--mpi=list")
+        if "pmix" not in known.stdout + known.stderr:
+            self.skipTest("this Slurm does not speak PMIx")
+        scene = self.folder / "foam.toml"
+        scene.write_text(FOAM.format(count=300, end=0.4))
+        here, there, apart = (self.folder / name for name in ("here", "there", "apart"))
+        self.assert_exit(lamella("run", scene, "--out", here, "--progress", "none"), 0)
+        run = (PROGRAM, "run", scene, "--progress", "none", "--out")
+        self.assert_exit(self.slurm.run("srun", "--mpi=pmix", "--ntasks=2", *run, there), 0)
+        self.assertEqual(json.loads((there / "run.json").read_text())["processes"], 2)
+        self.assertEqual(results(there), results(here))
+        # Processes that do not know of each other would each run the whole foam.
+        result = self.slurm.run("srun", "--mpi=none", "--ntasks=2", *run, apart)
+        self.assert_exit(result, 2)
+        self.assertIn("srun --mpi=pmix", result.stderr)
+        self.assertFalse(apart.exists())
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import pathlib
 import random
 import re
 import signal
+import socket
 import subprocess
 import time
 import unittest
@@ -186,6 +187,18 @@ class Sweep(ProgramTest):
         self.assertEqual(self.states()["interrupted"], [0, 1])
         self.assertEqual([file.name for file in (self.out / "leases").iterdir() if not file.name.startswith(".")], [])
 
+    def deaths_before(self, process):
+        """How many workers died at the task that this one has: after ten it would count as failed."""
+        deaths = 0
+        for lease in (self.out / "leases").iterdir():
+            try:
+                words = lease.read_text().split()
+            except OSError:
+                continue  # just given back
+            if len(words) == 4 and words[1] == process:
+                deaths = max(deaths, int(words[2]))
+        return deaths
+
     def test_workers_that_are_killed_change_nothing(self):
         many = SWEEP.replace("seeds = 2", f"seeds = {int(os.environ.get('LAMELLA_SWEEP_SEEDS', 4))}")
         self.assert_exit(self.plan(many), 0)
@@ -202,6 +215,7 @@ class Sweep(ProgramTest):
         while process.poll() is None:
             time.sleep(moments.uniform(0.02, 0.2))
             children = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True, check=False).stdout.split()
+            children = [child for child in children if self.deaths_before(child) < 5]
             if children and killed < 2 * len(names):
                 try:
                     os.kill(int(moments.choice(children)), signal.SIGKILL)
@@ -210,6 +224,7 @@ class Sweep(ProgramTest):
                     pass
         _, messages = process.communicate()
         self.assertEqual(process.returncode, 0, messages)
+        self.assertEqual(len(self.states()["done"]), len(names), messages)
         self.assertGreater(killed, 3)
         noticed = int(re.search(r"(\d+) workers were killed", messages).group(1))
         self.assertLessEqual(noticed, killed)  # one may have ended by itself just before
@@ -217,6 +232,18 @@ class Sweep(ProgramTest):
         self.assertEqual(self.table("--series"), expected)
         for name in names:
             self.assertEqual(results(self.out / "runs" / name), undisturbed[name])
+
+    def test_a_task_whose_workers_all_died_fails(self):
+        self.assert_exit(self.plan('scene = "foam.toml"\n[repeat]\nseeds = 2'), 0)
+        lease = self.out / "leases" / self.rows()[1][1]
+        gone = subprocess.Popen(["true"])
+        gone.wait()
+        lease.write_text(f"{socket.gethostname()} {gone.pid} 9 1\n")
+        for jobs in (2, 1):
+            result = lamella("sweep", "run", self.out, "--jobs", jobs)
+            self.assert_exit(result, 3)
+            self.assertEqual(self.states()["failed"], [0])
+            self.assertEqual(self.states()["done"], [1])
 
     def test_a_task_that_fails_is_told_and_left(self):
         self.assert_exit(self.plan('scene = "foam.toml"\n[repeat]\nseeds = 2'), 0)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -21,8 +22,8 @@ struct Incoming {
 
 /// The processes that compute one simulation together; "rank" is a process's number among them, from 0.
 ///
-/// Everything but rank() and size() is collective: all processes call the same function in the same order. What comes
-/// out of sum() and largest() is the same on all, so that decisions that rest on it are.
+/// Everything but rank(), size() and the clocks is collective: all processes call the same function in the same order.
+/// What comes out of sum() and largest() is the same on all, so that decisions that rest on it are.
 class Communicator {
 public:
     virtual ~Communicator() = default;
@@ -44,9 +45,16 @@ public:
     /// What comes in is there after end(), and work can be done in between. Not for messages to oneself.
     virtual void begin(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) = 0;
     virtual void end() = 0;
+    /// As end(), but what goes out may still be on its way: it must stay as it is until the next call of a function
+    /// that all processes call, begin() among them. Who sends does not wait for who receives.
+    virtual void receive() { end(); }
 
     /// Time that this process has spent in reduce, exchange, begin and end: moving data, and waiting for others [s].
     virtual double seconds() const { return 0.0; }
+    /// A clock that stands while this process waits for others or moves data [s].
+    virtual double work_clock() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count() - seconds();
+    }
 
     /// Ends the other processes, and maybe this one: it met an error that they do not know of. Not collective.
     virtual void abort(int exit_code) = 0;

@@ -3,6 +3,7 @@
 #include "lamella/core/aligned.h"
 #include "lamella/dist/routes.h"
 
+#include <array>
 #include <cstdint>
 #include <utility>
 
@@ -40,8 +41,10 @@ private:
     Routes routes_;
     std::size_t first_copy_ = 0;
 
-    std::vector<Column*> columns_;  ///< between begin() and end()
-    std::vector<double> sent_, received_;
+    std::vector<Column*> columns_;             ///< between begin() and end()
+    std::array<std::vector<double>, 2> sent_;  ///< by turns: the last one may still be on its way
+    std::vector<double> received_;
+    std::size_t turn_ = 0;
 };
 
 }  // namespace lamella::dist

@@ -69,6 +69,7 @@ public:
         MPI_Op_create(combine, kCommutes, &combine_);
     }
     ~Mpi() override {
+        end_sends();
         MPI_Op_free(&combine_);
         MPI_Type_free(&together_);
         MPI_Finalize();
@@ -81,6 +82,7 @@ public:
 
     void reduce(std::span<std::int64_t> sums, std::span<double> maxima) override {
         const Stopwatch stopwatch(seconds_);
+        end_sends();
         // MPI does not say what the largest of NaN and a number is; it could differ between processes.
         for (double& value : maxima)
             if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
@@ -98,6 +100,7 @@ public:
     }
 
     void broadcast(std::span<std::byte> bytes) override {
+        end_sends();
         for_each_chunk(bytes, [](std::span<std::byte> chunk) {
             MPI_Bcast(chunk.data(), static_cast<int>(chunk.size()), MPI_BYTE, 0, MPI_COMM_WORLD);
         });
@@ -105,6 +108,7 @@ public:
 
     std::vector<std::int64_t> exchange(std::span<const std::int64_t> to_each) override {
         const Stopwatch stopwatch(seconds_);
+        end_sends();
         std::vector<std::int64_t> from(to_each.size());
         MPI_Alltoall(to_each.data(), 1, MPI_INT64_T, from.data(), 1, MPI_INT64_T, MPI_COMM_WORLD);
         return from;
@@ -112,22 +116,28 @@ public:
 
     void begin(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
         const Stopwatch stopwatch(seconds_);
+        end_sends();
         for (const Incoming& message : incoming)
             for_each_chunk(message.bytes, [&](std::span<std::byte> chunk) {
                 MPI_Irecv(chunk.data(), static_cast<int>(chunk.size()), MPI_BYTE, message.from, kTag, MPI_COMM_WORLD,
-                          &requests_.emplace_back());
+                          &receives_.emplace_back());
             });
         for (const Outgoing& message : outgoing)
             for_each_chunk(message.bytes, [&](std::span<const std::byte> chunk) {
                 MPI_Isend(chunk.data(), static_cast<int>(chunk.size()), MPI_BYTE, message.to, kTag, MPI_COMM_WORLD,
-                          &requests_.emplace_back());
+                          &sends_.emplace_back());
             });
     }
 
     void end() override {
         const Stopwatch stopwatch(seconds_);
-        MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
-        requests_.clear();
+        wait(receives_);
+        end_sends();
+    }
+
+    void receive() override {
+        const Stopwatch stopwatch(seconds_);
+        wait(receives_);
     }
 
     double seconds() const override { return seconds_; }
@@ -135,6 +145,13 @@ public:
     void abort(int exit_code) override { MPI_Abort(MPI_COMM_WORLD, exit_code); }
 
 private:
+    static void wait(std::vector<MPI_Request>& requests) {
+        MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+        requests.clear();
+    }
+    /// A long message has left only once the other process has come to receive it.
+    void end_sends() { wait(sends_); }
+
     template <class T, class Work>
     static void for_each_chunk(std::span<T> all, Work&& work) {
         constexpr std::size_t kMost = kMostBytes / sizeof(T);
@@ -146,7 +163,7 @@ private:
     double seconds_ = 0.0;
     MPI_Datatype together_ = MPI_DATATYPE_NULL;
     MPI_Op combine_ = MPI_OP_NULL;
-    std::vector<MPI_Request> requests_;
+    std::vector<MPI_Request> receives_, sends_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "lamella/core/parallel.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace lamella::dist {
 namespace {
@@ -34,6 +35,10 @@ struct Search {
     }
 };
 
+std::int64_t sum_of(std::span<const std::int64_t> weights) {
+    return std::accumulate(weights.begin(), weights.end(), std::int64_t{0});
+}
+
 }  // namespace
 
 template <int D>
@@ -47,27 +52,28 @@ Partition<D>::Partition(Communicator& processes,
                         const spatial::PeriodicBox<D>& box,
                         std::array<const double*, D> position,
                         std::size_t count,
-                        int parts)
-    : Partition(box, parts) {
+                        std::span<const std::int64_t> weights)
+    : Partition(box, static_cast<int>(weights.size())) {
     std::vector<std::int32_t> node_of_point(count, 0);
     std::vector<std::int32_t> open{0};
     while (true) {
         std::erase_if(open, [&](std::int32_t n) { return nodes_[static_cast<std::size_t>(n)].parts == 1; });
         if (open.empty()) break;
         const std::size_t first_new = nodes_.size();
-        cut_level(processes, position, node_of_point, open);
+        cut_level(processes, position, weights, node_of_point, open);
         open.clear();
         for (std::size_t n = first_new; n < nodes_.size(); ++n) open.push_back(static_cast<std::int32_t>(n));
     }
-    leaf_.resize(static_cast<std::size_t>(parts));
+    leaf_.resize(weights.size());
     for (std::size_t n = 0; n < nodes_.size(); ++n)
         if (nodes_[n].axis < 0) leaf_[static_cast<std::size_t>(nodes_[n].first)] = static_cast<std::int32_t>(n);
 }
 
-/// Cuts every node in `open` once and moves the points into the halves.
+/// Cuts every node in `open` once, into halves of its parts, and moves the points into the halves.
 template <int D>
 void Partition<D>::cut_level(Communicator& processes,
                              std::array<const double*, D> position,
+                             std::span<const std::int64_t> weights,
                              std::vector<std::int32_t>& node_of_point,
                              const std::vector<std::int32_t>& open) {
     std::vector<Search> searches;
@@ -114,8 +120,12 @@ void Partition<D>::cut_level(Communicator& processes,
             if (round == 0) {
                 std::int64_t all = 0;
                 for (std::size_t b = 0; b < kBins; ++b) all += in_bin[b];
-                const int parts = nodes_[static_cast<std::size_t>(search.node)].parts;
-                search.wanted = all / parts * (parts / 2) + all % parts * (parts / 2) / parts;
+                const Node& node = nodes_[static_cast<std::size_t>(search.node)];
+                const auto of_node =
+                    weights.subspan(static_cast<std::size_t>(node.first), static_cast<std::size_t>(node.parts));
+                const std::int64_t whole = sum_of(of_node);
+                const std::int64_t below = sum_of(of_node.first(of_node.size() / 2));
+                search.wanted = all / whole * below + all % whole * below / whole;
             }
             std::size_t bin = 0;
             while (bin + 1 < kBins && search.below + in_bin[bin] < search.wanted) search.below += in_bin[bin++];

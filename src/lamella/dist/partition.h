@@ -8,12 +8,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace lamella::dist {
 
-/// A box cut into parts that hold about equally many points, by recursive bisection: every cut halves the points of
-/// its piece across the piece's longest edge. Parts are boxes, so that their borders are short and a void costs its
+/// A box cut into parts that hold points in given proportions, by recursive bisection: every cut shares out the points
+/// of its piece across the piece's longest edge. Parts are boxes, so that their borders are short and a void costs its
 /// owner nothing.
 template <int D>
 class Partition {
@@ -21,13 +22,14 @@ public:
     /// One part.
     explicit Partition(const spatial::PeriodicBox<D>& box) : Partition(box, 1) {}
 
-    /// As many parts as wanted. The points are those of all processes; the result is the same on all of them.
+    /// The points are those of all processes; the result is the same on all of them.
     /// @param position  D columns of `count` coordinates; on periodic axes any image will do
+    /// @param weights  of the parts, above 0: a part gets its weight over the sum of all weights
     Partition(Communicator& processes,
               const spatial::PeriodicBox<D>& box,
               std::array<const double*, D> position,
               std::size_t count,
-              int parts);
+              std::span<const std::int64_t> weights);
 
     int parts() const { return parts_; }
 
@@ -115,6 +117,7 @@ private:
 
     void cut_level(Communicator& processes,
                    std::array<const double*, D> position,
+                   std::span<const std::int64_t> weights,
                    std::vector<std::int32_t>& node_of_point,
                    const std::vector<std::int32_t>& open);
 

@@ -38,4 +38,8 @@ void Routes::end() const {
     if (processes_ != nullptr) processes_->end();
 }
 
+void Routes::receive() const {
+    if (processes_ != nullptr) processes_->receive();
+}
+
 }  // namespace lamella::dist

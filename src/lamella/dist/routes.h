@@ -45,9 +45,10 @@ public:
         return received;
     }
 
-    /// One message per route of so many bytes an item, as in Communicator.
+    /// One message per route of so many bytes an item, as in Communicator; received with end() or receive().
     void begin(std::span<const std::byte> sent, std::span<std::byte> received, std::size_t item_bytes) const;
     void end() const;
+    void receive() const;
 
 private:
     Communicator* processes_ = nullptr;

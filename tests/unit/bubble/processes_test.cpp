@@ -54,6 +54,28 @@ TEST(Processes, ContinueEachOthersStates) {
     }
 }
 
+TEST(Processes, ThatAreSlowGetFewerBubblesAndTheSameBits) {
+    ThreadLimit one(1);
+    const Options o = quick(2);
+    const Outcome alone = run_shared<2>(o, 60, 1);
+    Outcome shared;
+    std::vector<std::size_t> own(2);
+    lamella::test::ProcessTeam team(2);
+    team.set_pace({1.0, 1.5});
+    team.run([&](const Processes& all) {
+        auto solver = make_share<2>(o, all);
+        solver->start({});
+        for (int step = 0; step < 60; ++step) solver->advance(1e9);
+        look(*solver, *all, shared);
+        const Foam<2>& foam = solver->system().foam;
+        for (std::size_t i = 0; i < foam.slots; ++i)
+            own[static_cast<std::size_t>(all->rank())] += foam.alive(i) ? 1 : 0;
+    });
+    EXPECT_EQ(shared.state, alone.state);
+    EXPECT_LT(static_cast<double>(own[1]), 0.75 * static_cast<double>(own[0]));
+    EXPECT_GT(static_cast<double>(own[1]), 0.4 * static_cast<double>(own[0]));
+}
+
 /// The plan's copies per own bubble over those that are there, on average over the processes.
 template <int D>
 double halo_share_over_found(const Options& options, int processes) {

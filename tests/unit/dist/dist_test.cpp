@@ -3,6 +3,7 @@
 #include "lamella/core/error.h"
 #include "lamella/core/random.h"
 #include "lamella/dist/agree.h"
+#include "lamella/dist/balance.h"
 #include "lamella/dist/gather.h"
 #include "lamella/dist/halo.h"
 #include "lamella/dist/migration.h"
@@ -152,6 +153,69 @@ TEST(Halo, KeepsCopiesUpToDateThroughRenumbering) {
         EXPECT_EQ(value[9], from + 2);
         EXPECT_EQ(twice[10], 2.0 * (from + 4));
     });
+}
+
+TEST(Halo, LeavesWhatIsOnItsWayUntilAllMeet) {
+    as_processes(2, [&](const std::shared_ptr<Communicator>& processes) {
+        std::vector<std::vector<std::uint32_t>> wanted(2);
+        wanted[static_cast<std::size_t>(1 - processes->rank())] = {1, 0};
+        Halo halo(*processes, wanted);
+        halo.renumber(std::vector<std::uint32_t>{0, 1, 2}, 8);
+        Column column(8, 0.0);
+        Column* const columns[] = {&column};
+        for (int round = 1; round <= 4; ++round) {  // between which nothing else is called: see ProcessTeam
+            column[0] = 10.0 * round + processes->rank();
+            column[1] = -column[0];
+            halo.begin(columns);
+            halo.end();
+            EXPECT_EQ(column[8], -(10.0 * round + 1 - processes->rank()));
+            EXPECT_EQ(column[9], 10.0 * round + 1 - processes->rank());
+        }
+    });
+}
+
+TEST(Balance, GivesEachAsMuchAsItIsFast) {
+    using List = std::vector<std::int64_t>;
+    EXPECT_EQ(weights_for(List{30'000, 30'000}), (List{1024, 1024}));
+    EXPECT_EQ(weights_for(List{30'000, 36'000}), (List{1117, 931}));  // 12/11 and 10/11 of the mean
+    EXPECT_EQ(weights_for(List{10'000, 90'000}), (List{1280, 768})) << "memory has to stay even";
+    EXPECT_EQ(weights_for(List{10'000, 0}), (List{1024, 1024})) << "who has no items has no speed";
+}
+
+TEST(Balance, TakesNewWeightsWhereTheSlowestHoldsUpTheOthers) {
+    const auto after = [](std::vector<double> pace, std::vector<std::size_t> items, int looks) {
+        std::vector<std::int64_t> weights;
+        double shares = 0.0;
+        int changes = 0;
+        test::ProcessTeam team(static_cast<int>(pace.size()));
+        team.set_pace(pace);
+        team.run([&](const std::shared_ptr<Communicator>& processes) {
+            Balance balance(*processes);
+            for (int look = 0; look < looks; ++look) {
+                { const Balance::Working working(balance); }
+                const bool changed = balance.update(items[static_cast<std::size_t>(processes->rank())]);
+                if (changed && processes->rank() == 0) ++changes;
+            }
+            const std::vector<std::int64_t> all(balance.weights().begin(), balance.weights().end());
+            if (!weights.empty()) {
+                EXPECT_EQ(all, weights) << "not the same on all processes";
+            }
+            weights = all;
+            shares += balance.share();
+        });
+        EXPECT_NEAR(shares, 1.0, 1e-15);
+        EXPECT_LE(changes, 1);
+        return weights;
+    };
+    using List = std::vector<std::int64_t>;
+    EXPECT_EQ(after({5.0, 6.0}, {100, 100}, 9), (List{1117, 931}));
+    EXPECT_EQ(after({0.5, 0.6}, {100, 100}, 6), (List{1024, 1024})) << "too early to tell";
+    EXPECT_EQ(after({0.5, 0.6}, {100, 100}, 7), (List{1117, 931}));
+    EXPECT_EQ(after({5.0, 5.2}, {100, 100}, 9), (List{1024, 1024})) << "not worth it";
+    EXPECT_EQ(after({5.0, 6.0}, {100, 120}, 9), (List{1024, 1024})) << "more items, not less speed";
+    EXPECT_EQ(after({5.0, 50.0, 5.0}, {100, 100, 100}, 9), (List{1280, 768, 1280}));
+    EXPECT_EQ(after({5.0, 5.0}, {100, 0}, 9), (List{1024, 1024}));
+    EXPECT_EQ(after({5.0}, {100}, 9), (List{1024}));
 }
 
 TEST(Gather, IsUndoneByScatterInPiecesOfAnySize) {

@@ -51,10 +51,12 @@ Cloud<D> cloud_with_void(std::size_t count, bool walls) {
     return cloud;
 }
 
+std::vector<std::int64_t> even(int parts) { return std::vector<std::int64_t>(static_cast<std::size_t>(parts), 1); }
+
 template <int D>
 double imbalance(const Cloud<D>& cloud, int parts) {
     Alone alone;
-    const Partition<D> partition(alone, cloud.box, cloud.pointers(), cloud.size(), parts);
+    const Partition<D> partition(alone, cloud.box, cloud.pointers(), cloud.size(), even(parts));
     std::vector<std::size_t> load(static_cast<std::size_t>(parts));
     for (std::size_t i = 0; i < cloud.size(); ++i) ++load[static_cast<std::size_t>(partition.owner(cloud.point(i)))];
     return static_cast<double>(*std::max_element(load.begin(), load.end())) * parts / static_cast<double>(cloud.size());
@@ -68,11 +70,22 @@ TEST(Partition, IsBalancedAroundAVoid) {
     EXPECT_LE(imbalance(cloud_with_void<3>(200'000, true), 1024), 1.05);
 }
 
+TEST(Partition, SharesOutInProportion) {
+    const Cloud<2> cloud = cloud_with_void<2>(20'000, false);
+    const std::vector<std::int64_t> weights{1024, 1280, 768, 1024, 900};
+    Alone alone;
+    const Partition<2> partition(alone, cloud.box, cloud.pointers(), cloud.size(), weights);
+    std::vector<double> load(weights.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i) load[static_cast<std::size_t>(partition.owner(cloud.point(i)))] += 1;
+    for (std::size_t p = 0; p < weights.size(); ++p)
+        EXPECT_NEAR(load[p] / 20'000.0 / (static_cast<double>(weights[p]) / 4996.0), 1.0, 0.005) << p;
+}
+
 template <int D>
 void expect_all_near_parts_found(bool walls) {
     const Cloud<D> cloud = cloud_with_void<D>(1500, walls);
     Alone alone;
-    const Partition<D> partition(alone, cloud.box, cloud.pointers(), cloud.size(), 23);
+    const Partition<D> partition(alone, cloud.box, cloud.pointers(), cloud.size(), even(23));
     const Vec<D> inverse = cloud.box.inverse_lengths();
     std::size_t inside = 0;
     for (std::size_t i = 0; i < cloud.size(); i += 7) {
@@ -109,7 +122,7 @@ TEST(Partition, FindsEveryPartNearABall) {
 TEST(Partition, OwnsPointsBeyondWallsAndOtherImages) {
     const Cloud<2> cloud = cloud_with_void<2>(1000, true);
     Alone alone;
-    const Partition<2> partition(alone, cloud.box, cloud.pointers(), cloud.size(), 9);
+    const Partition<2> partition(alone, cloud.box, cloud.pointers(), cloud.size(), even(9));
     Vec2 inside = cloud.point(5);
     Vec2 image = inside;
     image[1] += 2.0 * cloud.box.lengths[1];
@@ -126,7 +139,7 @@ TEST(Partition, OwnsPointsBeyondWallsAndOtherImages) {
 TEST(Partition, SurvivesMorePartsThanPoints) {
     const Cloud<2> cloud = cloud_with_void<2>(3, false);
     Alone alone;
-    const Partition<2> partition(alone, cloud.box, cloud.pointers(), cloud.size(), 16);
+    const Partition<2> partition(alone, cloud.box, cloud.pointers(), cloud.size(), even(16));
     std::set<int> owners;
     for (std::size_t i = 0; i < cloud.size(); ++i) owners.insert(partition.owner(cloud.point(i)));
     EXPECT_GE(owners.size(), 2U);

@@ -21,7 +21,11 @@ public:
         : size_(size),
           outgoing_(static_cast<std::size_t>(size)),
           integers_(outgoing_.size()),
-          reals_(outgoing_.size()) {}
+          reals_(outgoing_.size()),
+          pace_(outgoing_.size(), 1.0) {}
+
+    /// How far the clock of each process goes whenever it is read [s].
+    void set_pace(std::vector<double> pace) { pace_ = std::move(pace); }
 
     class Member final : public dist::Communicator {
         template <class List>
@@ -35,6 +39,7 @@ public:
         int size() const override { return team_.size_; }
 
         void reduce(std::span<std::int64_t> sums, std::span<double> maxima) override {
+            look_at_what_was_on_its_way();
             mine(team_.integers_).assign(sums.begin(), sums.end());
             mine(team_.reals_).assign(maxima.begin(), maxima.end());
             meet();
@@ -47,12 +52,14 @@ public:
             meet();
         }
         void broadcast(std::span<std::byte> bytes) override {
+            look_at_what_was_on_its_way();
             if (rank_ == 0) team_.broadcast_ = bytes;
             meet();
             if (rank_ != 0) std::copy(team_.broadcast_.begin(), team_.broadcast_.end(), bytes.begin());
             meet();
         }
         std::vector<std::int64_t> exchange(std::span<const std::int64_t> to_each) override {
+            look_at_what_was_on_its_way();
             mine(team_.integers_).assign(to_each.begin(), to_each.end());
             meet();
             std::vector<std::int64_t> from;
@@ -62,6 +69,7 @@ public:
         }
         /// As MPI may: nothing moves before end().
         void begin(std::span<const dist::Outgoing> outgoing, std::span<const dist::Incoming> incoming) override {
+            look_at_what_was_on_its_way();
             mine(team_.outgoing_).assign(outgoing.begin(), outgoing.end());
             incoming_.assign(incoming.begin(), incoming.end());
         }
@@ -79,14 +87,33 @@ public:
             }
             meet();
         }
+        void receive() override {
+            for (const dist::Outgoing& sent : mine(team_.outgoing_))
+                on_its_way_.push_back({sent.bytes, {sent.bytes.begin(), sent.bytes.end()}});
+            end();
+        }
         void abort(int) override { std::terminate(); }
+        double work_clock() const override { return clock_ += team_.pace_[static_cast<std::size_t>(rank_)]; }
 
     private:
+        struct OnItsWay {
+            std::span<const std::byte> bytes;
+            std::vector<std::byte> sent;
+        };
+
         void meet() { team_.meet(); }
+        /// What was sent has to be there still.
+        void look_at_what_was_on_its_way() {
+            for (const OnItsWay& message : on_its_way_)
+                if (!std::equal(message.sent.begin(), message.sent.end(), message.bytes.begin())) std::terminate();
+            on_its_way_.clear();
+        }
 
         ProcessTeam& team_;
         int rank_;
         std::vector<dist::Incoming> incoming_;
+        std::vector<OnItsWay> on_its_way_;
+        mutable double clock_ = 0.0;
     };
 
     /// Calls work(communicator) as each process, all of which must meet equally often.
@@ -147,6 +174,7 @@ private:
     std::vector<std::vector<std::int64_t>> integers_;
     std::vector<std::vector<double>> reals_;
     std::span<std::byte> broadcast_;
+    std::vector<double> pace_;
 };
 
 /// Calls work(communicator) as each of `size` processes. An error of process 0 reaches the caller.

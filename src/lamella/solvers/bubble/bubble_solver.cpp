@@ -233,6 +233,7 @@ void BubbleSolver<D>::remember_start() {
 template <int D>
 sim::StepReport BubbleSolver<D>::advance(double time_limit) {
     if (device_) return advance_on_device(time_limit);
+    const auto working = system_->working();
     const double wanted = std::min(integrator_->next_step(), options_.integrator.max_step);
     const Landing landing = clock_.landing(time_limit, time_rate_, wanted);
     const Step step = integrator_->step(*system_, landing.longest);

@@ -136,7 +136,8 @@ Evaluation contact_pass(const Model& model,
                         Stiffness stiffness,
                         Domain& domain,
                         std::size_t live,
-                        Rates<D>& rates) {
+                        Rates<D>& rates,
+                        double* also) {
     const bool with_gas = gas == Gas::kOn && model.exchanges_gas();
     const bool bound = stiffness == Stiffness::kBound;
     const auto over = [&](std::size_t first_group, std::size_t end_group) {
@@ -149,11 +150,15 @@ Evaluation contact_pass(const Model& model,
     domain.end_refresh();
     sums += over(neighbors.interior_groups, neighbors.groups());
     FixedSum all[] = {sums.gas.weight, sums.gas.weight_by_size, sums.gas.scale};
-    double stiffest[] = {sums.stiffness};
-    domain.reduce(with_gas ? std::span(all) : std::span<FixedSum>(), bound ? std::span(stiffest) : std::span<double>());
+    double maxima[] = {0.0, 0.0};
+    std::size_t asked = 0;
+    if (bound) maxima[asked++] = sums.stiffness;
+    if (also != nullptr) maxima[asked++] = *also;
+    domain.reduce(with_gas ? std::span(all) : std::span<FixedSum>(), std::span(maxima).first(asked));
+    if (also != nullptr) *also = maxima[asked - 1];
     Evaluation result;
     if (with_gas) result.gas = close_exchange<D>(model, {all[0], all[1], all[2]}, static_cast<double>(live));
-    if (bound) result.stiffness = stiffest[0] + (with_gas ? exchange_stiffness<D>(model) : 0.0);
+    if (bound) result.stiffness = maxima[0] + (with_gas ? exchange_stiffness<D>(model) : 0.0);
     return result;
 }
 
@@ -165,7 +170,8 @@ template Evaluation contact_pass<2>(const Model&,
                                     Stiffness,
                                     Domain&,
                                     std::size_t,
-                                    Rates<2>&);
+                                    Rates<2>&,
+                                    double*);
 template Evaluation contact_pass<3>(const Model&,
                                     const PeriodicBox<3>&,
                                     const NeighborList<3>&,
@@ -174,6 +180,7 @@ template Evaluation contact_pass<3>(const Model&,
                                     Stiffness,
                                     Domain&,
                                     std::size_t,
-                                    Rates<3>&);
+                                    Rates<3>&,
+                                    double*);
 
 }  // namespace lamella::bubble

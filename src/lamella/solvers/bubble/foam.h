@@ -17,6 +17,12 @@ namespace lamella::bubble {
 template <int D>
 using Columns = std::array<Column, D>;
 
+/// Lets go of a column's memory, which `column = {}` keeps for the next values.
+template <class C>
+void release(C& column) {
+    C().swap(column);
+}
+
 template <int D>
 std::array<const double*, D> pointers(const Columns<D>& columns) {
     std::array<const double*, D> p;

@@ -77,11 +77,11 @@ sim::Frame BubbleSolver<D>::frame_of(Census<D> census, const Order& order, bool 
         frame.box->periodic[k] = foam.box.periodic[k];
     }
     frame.scalars = scalars_from(census);
-    census.force = {};
-    (options_.compat.energy ? census.energy : census.energy_thesis) = {};
+    release(census.force);
+    release(options_.compat.energy ? census.energy : census.energy_thesis);
     if (!all_fields)
         for (Column* column : {&census.energy, &census.energy_thesis, &census.pressure, &census.free_surface})
-            *column = {};
+            release(*column);
     frame.points.length_unit = "-";
 
     auto& fields = frame.points.fields;
@@ -91,7 +91,7 @@ sim::Frame BubbleSolver<D>::frame_of(Census<D> census, const Order& order, bool 
     using Index = std::size_t;
     const auto add_census = [&](const char* name, auto& column) -> sim::Field& {
         sim::Field& added = add(name, 1, [&](Index i, Index) { return static_cast<double>(column[i]); });
-        column = {};
+        release(column);
         return added;
     };
     add_census("contacts", census.contacts).integer = true;

@@ -19,9 +19,9 @@ constexpr double kLatency = 7e-6;
 // Resident memory in bytes per bubble, measured at 1e6 bubbles with frames (docs/clusters.md).
 constexpr double kProgramBytes = 38e6;
 template <int D>
-constexpr double kAlone = D == 2 ? 460.0 : 560.0;
+constexpr double kAlone = D == 2 ? 395.0 : 465.0;
 template <int D>
-constexpr double kShared = D == 2 ? 480.0 : 630.0;
+constexpr double kShared = D == 2 ? 440.0 : 620.0;
 constexpr double kCopy = 100.0;
 
 /// Mean of q = R^d over the radii of the start, taken as normal.

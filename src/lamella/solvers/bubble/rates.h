@@ -52,6 +52,7 @@ enum class Stiffness { kSkip, kBound };
 /// sum_contacts (F_0/(mu_0 S)) n n^T, so its largest eigenvalue is at most 2 max_i lambda_max(sum_j n n^T/S) F_0/mu_0;
 /// exact for a triangular lattice. Exchange of gas adds at most 2 K (1 + kappa) / R_min^2.
 ///
+/// @param also    if given, becomes its largest over all processes: it goes with the sums, which saves a wait
 /// @param domain  refreshes the copies in `stage`: what was begun is ended here, behind the bubbles that need no copies
 template <int D>
 Evaluation contact_pass(const Model& model,
@@ -62,6 +63,7 @@ Evaluation contact_pass(const Model& model,
                         Stiffness stiffness,
                         Domain& domain,
                         std::size_t live,
-                        Rates<D>& rates);
+                        Rates<D>& rates,
+                        double* also = nullptr);
 
 }  // namespace lamella::bubble

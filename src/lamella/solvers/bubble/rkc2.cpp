@@ -91,7 +91,8 @@ void Rkc2<D>::evaluate_first(System<D>& system) {
     ++evaluations_;
 }
 
-/// One stage: the increment, the state that it leads to, and the largest |dx| + dR from the step's start.
+/// One stage: the increment, the state that it leads to, and the largest |dx| + dR of a bubble here from the step's
+/// start.
 template <int D>
 double Rkc2<D>::advance_stage(System<D>& system, const StageWeights& w, double h, int number) {
     const Foam<D>& foam = system.foam;
@@ -144,7 +145,7 @@ double Rkc2<D>::advance_stage(System<D>& system, const StageWeights& w, double h
         },
         [](double a, double b) { return std::max(a, b); }, kGroupsPerBlock);
     std::swap(last_, before_);
-    return system.domain().largest(reach);
+    return reach;
 }
 
 /// Stages 1 to s; `stage` is then the new state, evaluated.
@@ -152,17 +153,27 @@ template <int D>
 StagesEnd Rkc2<D>::run_stages(System<D>& system, double h, int stages) {
     const std::vector<StageWeights> weights = chebyshev::stage_weights(stages);
     const double farthest = farthest_move(system);
+    const auto limit = [&] {
+        if (!(stage_reach_ < farthest)) return StagesEnd::kTooFar;
+        return start_expansion_ + stage_reach_ < system.reach() ? StagesEnd::kDone : StagesEnd::kListsOutgrown;
+    };
     stage_reach_ = 0.0;
     last_.resize(system.length());
     before_.resize(system.length());
     for (int j = 1; j <= stages; ++j) {
         const double reach = advance_stage(system, weights[static_cast<std::size_t>(j)], h, j);
         stage_reach_ = std::max(stage_reach_, reach);
-        if (!(stage_reach_ < farthest)) return StagesEnd::kTooFar;
-        if (start_expansion_ + stage_reach_ >= system.reach()) return StagesEnd::kListsOutgrown;
-        if (j == stages) stage_moved(system, last_);
         const bool last = j == stages;
-        const Evaluation evaluation = system.evaluate(Gas::kOn, last ? Stiffness::kBound : Stiffness::kSkip);
+        // How far the bubbles of others went is only known after the evaluation, which is then for nothing.
+        if (const StagesEnd here = limit(); here == StagesEnd::kDone) {
+            if (last) stage_moved(system, last_);
+        } else {
+            if (!system.domain().several()) return here;
+            system.stage_current();  // a state whose sums are in bounds
+        }
+        const Evaluation evaluation =
+            system.evaluate(Gas::kOn, last ? Stiffness::kBound : Stiffness::kSkip, &stage_reach_);
+        if (const StagesEnd all = limit(); all != StagesEnd::kDone) return all;
         gas_ = evaluation.gas;
         if (last) stiffness_ = evaluation.stiffness;
     }

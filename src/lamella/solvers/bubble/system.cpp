@@ -12,7 +12,11 @@ namespace lamella::bubble {
 
 template <int D>
 System<D>::System(const Options& options, Domain& domain)
-    : model(Model::from(options)), options_(options), domain_(&domain), liquid_(options, model, foam.box) {}
+    : model(Model::from(options)),
+      options_(options),
+      domain_(&domain),
+      liquid_(options, model, foam.box),
+      balance_(domain.processes()) {}
 
 template <int D>
 void System<D>::prepare(LiquidMotion motion) {
@@ -47,8 +51,9 @@ template <int D>
 void System<D>::distribute() {
     if (!domain_->several()) return;
     dist::Communicator& processes = domain_->processes();
-    if (!partition_ || unbalanced_ || !(partitioned_lengths_ == foam.box.lengths)) {
-        partition_.emplace(processes, foam.box, pointers<D>(foam.position), foam.slots, processes.size());
+    const bool reweighted = balance_.update(foam.slots);
+    if (!partition_ || unbalanced_ || reweighted || !(partitioned_lengths_ == foam.box.lengths)) {
+        partition_.emplace(processes, foam.box, pointers<D>(foam.position), foam.slots, balance_.weights());
         partitioned_lengths_ = foam.box.lengths;
     }
     std::vector<int> owner(foam.slots);
@@ -58,6 +63,7 @@ void System<D>::distribute() {
     const dist::Migration migration(processes, owner);
     foam.slots = migration.count();
     const auto move = [&](auto& column) {
+        column.reserve(std::max(column.size(), length()));  // resize() alone would take twice the room
         migration(column);
         column.resize(length());
     };
@@ -65,8 +71,8 @@ void System<D>::distribute() {
     for (Column* column : attached_in_use()) move(*column);
 
     constexpr double kWorthANewPartition = 1.05;
-    const double most = domain_->largest(static_cast<double>(foam.slots));
-    unbalanced_ = most * processes.size() > kWorthANewPartition * static_cast<double>(foam.live);
+    const double most = domain_->largest(static_cast<double>(foam.slots) / balance_.share());
+    unbalanced_ = most > kWorthANewPartition * static_cast<double>(foam.live);
 }
 
 template <int D>
@@ -133,19 +139,19 @@ spatial::NeighborSearch<D> System<D>::search_neighbors(const std::vector<std::ui
 template <int D>
 void System<D>::release_scratch() {
     rates = {};
-    for (Column* column : scratch) *column = {};
+    for (Column* column : scratch) release(*column);
 }
 
 template <int D>
 void System<D>::rebuild(double least_reach) {
-    distribute();
-    // What the new lists make obsolete makes room for them; the vanished are dropped, so that the search sees live
-    // bubbles only.
+    // What the new lists make obsolete makes room for what travels and for them; the vanished are dropped, so that the
+    // search sees live bubbles only.
     release_scratch();
     stage = {};
     built_position_ = {};
-    built_radius_ = {};
+    release(built_radius_);
     neighbors_ = {};
+    distribute();
     const std::vector<std::uint32_t> kept = live_slots();
     skin_ = std::max(options_.integrator.skin * mean_radius(), 2.0 * least_reach);
     dist::Halo halo;
@@ -216,7 +222,7 @@ void System<D>::stage_current() {
 }
 
 template <int D>
-Evaluation System<D>::evaluate(Gas gas, Stiffness stiffness) {
+Evaluation System<D>::evaluate(Gas gas, Stiffness stiffness, double* also) {
     std::vector<Column*> read_by_neighbors;
     for (auto& column : stage.position) read_by_neighbors.push_back(&column);
     read_by_neighbors.push_back(&stage.radius);
@@ -224,7 +230,7 @@ Evaluation System<D>::evaluate(Gas gas, Stiffness stiffness) {
     domain_->begin_refresh(read_by_neighbors);
     rates.resize(length());
     Evaluation evaluation =
-        contact_pass<D>(model, foam.box, neighbors_, stage, gas, stiffness, *domain_, foam.live, rates);
+        contact_pass<D>(model, foam.box, neighbors_, stage, gas, stiffness, *domain_, foam.live, rates, also);
     const double walls = liquid_.apply(neighbors_, stage, foam.velocity, *domain_, rates);
     if (stiffness == Stiffness::kBound) evaluation.stiffness += walls;
     return evaluation;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lamella/dist/balance.h"
 #include "lamella/dist/partition.h"
 #include "lamella/solvers/bubble/domain.h"
 #include "lamella/solvers/bubble/foam.h"
@@ -46,6 +47,9 @@ public:
     /// Takes the box, its walls, and the liquid's motion for the evaluations to come. Call after changing the box.
     void prepare(LiquidMotion motion);
 
+    /// Held while steps are made: what each process does meanwhile is measured, and who is slower gets fewer bubbles.
+    dist::Balance::Working working() { return dist::Balance::Working(balance_); }
+
     /// Hands every bubble to the process that owns its place, and drops vanished ones; with one process, nothing.
     void distribute();
 
@@ -70,8 +74,8 @@ public:
     /// stage = the current state.
     void stage_current();
 
-    /// rates = the right-hand side at `stage`.
-    Evaluation evaluate(Gas gas, Stiffness stiffness);
+    /// rates = the right-hand side at `stage`. @param also  as of contact_pass
+    Evaluation evaluate(Gas gas, Stiffness stiffness, double* also = nullptr);
 
     /// foam.velocity and foam.size_rate from `rates` and the exchange of an evaluation of the current state.
     void keep_rates(const GasExchange& gas);
@@ -93,6 +97,7 @@ private:
     std::optional<dist::Partition<D>> partition_;
     Vec<D> partitioned_lengths_;  // of the box that partition_ cuts
     bool unbalanced_ = false;     // partition_ has become so
+    dist::Balance balance_;
     Columns<D> built_position_;
     Column built_radius_;
     double skin_ = 0.0;
