@@ -1,6 +1,6 @@
 #include "lamella/solvers/melp/black_film.h"
 
-#include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/operators.h"
 
 namespace lamella::melp {
@@ -29,7 +29,7 @@ std::vector<Vec3> line_pull(const Geometry& g,
     };
     const Neighbors& same = g.neighbors.same;
     std::vector<Vec3> pull(g.size());
-    parallel_for(g.size(), [&](std::size_t i) {
+    for_each_particle(g.size(), [&](std::size_t i) {
         Vec3 sum;
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
             const std::size_t j = same.index[k];

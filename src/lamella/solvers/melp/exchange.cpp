@@ -1,6 +1,6 @@
 #include "lamella/solvers/melp/exchange.h"
 
-#include "lamella/core/parallel.h"
+#include "lamella/solvers/melp/loops.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 std::vector<double> facing_film(const Geometry& g) {
     const Neighbors& other = g.neighbors.other;
     std::vector<double> gamma(g.size(), 0.0);
-    parallel_for(g.size(), [&](std::size_t i) {
+    for_each_particle(g.size(), [&](std::size_t i) {
         for (std::size_t k = other.begin(i); k < other.end(i); ++k)
             if (dot(g.normal[i], g.normal[other.index[k]]) < 0.0) gamma[i] += g.area[other.index[k]] * other.weight[k];
     });
@@ -33,7 +33,7 @@ Exchange exchange_between(const Geometry& g,
     const double share = -0.5 * std::expm1(-rate * dt);
     Exchange gained{std::vector<double>(g.size(), 0.0), std::vector<double>(g.size(), 0.0), std::vector<Vec3>(g.size()),
                     std::vector<double>(g.size(), 0.0)};
-    parallel_for(g.size(), [&](std::size_t i) {
+    for_each_particle(g.size(), [&](std::size_t i) {
         if (has_none(i)) return;
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
             const std::size_t j = other.index[k];
