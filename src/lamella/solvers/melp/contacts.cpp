@@ -20,17 +20,17 @@ const Contact* Contacts::find(std::int32_t a, std::int32_t b) const {
     return at != pairs_.end() && at->a == wanted.a && at->b == wanted.b ? &*at : nullptr;
 }
 
-void Contacts::update(const Neighbors& other, std::span<const std::int32_t> region, double time) {
+void Contacts::update(std::span<const RegionPair> touching, double time) {
     if (at_once()) return;
     std::vector<Contact> now;
-    for (const auto& [a, b] : touching_regions(other, region)) {
+    for (const auto& [a, b] : touching) {
         const Contact* known = find(a, b);
         now.push_back({a, b, known == nullptr ? time : known->since});
     }
     pairs_ = std::move(now);
 }
 
-void Contacts::start_joined(std::span<const std::array<std::int32_t, 2>> pairs) {
+void Contacts::start_joined(std::span<const RegionPair> pairs) {
     for (const auto& pair : pairs) pairs_.push_back({pair[0], pair[1], -std::numeric_limits<double>::infinity()});
 }
 

@@ -2,7 +2,6 @@
 
 #include "lamella/solvers/melp/neighbors.h"
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -33,9 +32,9 @@ public:
     /// Whether pairs join at once: there is nothing to keep then.
     bool at_once() const { return joining_.ever && joining_.delay == 0.0; }
     /// Those that are in contact now. @param time  now [s]
-    void update(const Neighbors& other, std::span<const std::int32_t> region, double time);
+    void update(std::span<const RegionPair> touching, double time);
     /// Pairs of regions that have joined from the start. @param pairs  ascending, a < b
-    void start_joined(std::span<const std::array<std::int32_t, 2>> pairs);
+    void start_joined(std::span<const RegionPair> pairs);
 
     /// Region `from` is a part of `into` now.
     void rename(std::int32_t from, std::int32_t into);

@@ -66,14 +66,14 @@ double fold(const Geometry& geometry, std::size_t i) {
 
 }  // namespace
 
-std::vector<std::size_t> clusters(const CoarseParticles& coarse, const Geometry& geometry, std::size_t regions) {
+std::vector<std::size_t> clusters(const Geometry& geometry, std::size_t regions) {
     std::vector<std::size_t> cluster(regions);
     std::iota(cluster.begin(), cluster.end(), std::size_t{0});
     const auto root = [&](std::size_t r) {
         while (cluster[r] != r) r = cluster[r];
         return r;
     };
-    for (const auto& [p, q] : touching_regions(geometry.neighbors.other, coarse.region)) {
+    for (const auto& [p, q] : geometry.neighbors.touching) {
         const std::size_t a = root(static_cast<std::size_t>(p)), b = root(static_cast<std::size_t>(q));
         cluster[std::max(a, b)] = std::min(a, b);
     }
@@ -149,7 +149,7 @@ std::vector<FreeCluster> free_clusters(const CoarseParticles& coarse,
                                        const Geometry& geometry,
                                        std::span<const Gas> gas,
                                        std::span<const RimPiece> rims) {
-    const std::vector<std::size_t> cluster_of = clusters(coarse, geometry, gas.size());
+    const std::vector<std::size_t> cluster_of = clusters(geometry, gas.size());
     std::vector<std::vector<std::size_t>> members(gas.size());
     for (std::size_t i = 0; i < coarse.size(); ++i) members[cluster_of[region_of(coarse, i)]].push_back(i);
     std::vector<FreeCluster> free;

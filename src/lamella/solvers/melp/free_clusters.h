@@ -46,7 +46,7 @@ private:
 };
 
 /// For each region the smallest one of the cluster that it belongs to by contact.
-std::vector<std::size_t> clusters(const CoarseParticles& coarse, const Geometry& geometry, std::size_t regions);
+std::vector<std::size_t> clusters(const Geometry& geometry, std::size_t regions);
 
 /// All that fly, and half bubbles on plates; none that has burst.
 std::vector<FreeCluster> free_clusters(const CoarseParticles& coarse,

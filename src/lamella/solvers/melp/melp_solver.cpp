@@ -367,7 +367,7 @@ void MelpSolver::keep_coarse_inside() {
 void MelpSolver::update_shape() { geometry_ = geometry_of(coarse_, support_radius(), rims_now_); }
 
 void MelpSolver::follow_contacts(double time) {
-    contacts_.update(geometry_.neighbors.other, coarse_.region, time);
+    contacts_.update(geometry_.neighbors.touching, time);
     joined_ = contacts_.joined(geometry_.neighbors.other, coarse_.region, time);
 }
 

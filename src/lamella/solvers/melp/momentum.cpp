@@ -31,7 +31,7 @@ std::vector<Vec3> MelpSolver::region_velocities() const {
 /// Clusters of bubbles that touch no rim and have no hole, one number for each; -1: regions of others. Only as a whole
 /// they keep their momentum: within them films push each other.
 std::vector<std::ptrdiff_t> MelpSolver::flying_clusters() const {
-    const std::vector<std::size_t> cluster = clusters(coarse_, geometry_, gas_.size());
+    const std::vector<std::size_t> cluster = clusters(geometry_, gas_.size());
     std::vector<std::ptrdiff_t> flying(cluster.begin(), cluster.end());
     for (std::size_t r = 0; r < gas_.size(); ++r)
         if (gas_[r].held || gas_[r].burst) flying[cluster[r]] = -1;
@@ -45,11 +45,10 @@ std::vector<std::ptrdiff_t> MelpSolver::flying_clusters() const {
 void MelpSolver::give_back_to_liquid(const std::vector<Vec3>& momentum) {
     if (fine_.size() == 0) return;
     const std::vector<std::ptrdiff_t> cluster = flying_clusters();
-    std::vector<Vec3> missing = momentum;                   // of each cluster, at its smallest region
+    std::vector<Vec3> missing(gas_.size());                 // of each cluster, at its smallest region
     std::vector<std::array<double, 9>> along(gas_.size());  // sum V n n^T
     for (std::size_t r = 0; r < gas_.size(); ++r)
-        if (cluster[r] >= 0 && static_cast<std::size_t>(cluster[r]) != r)
-            missing[static_cast<std::size_t>(cluster[r])] += momentum[r];
+        if (cluster[r] >= 0) missing[static_cast<std::size_t>(cluster[r])] += momentum[r];
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         const std::ptrdiff_t c = cluster[static_cast<std::size_t>(coarse_.region[i])];
         if (c < 0) continue;

@@ -4,6 +4,7 @@
 #include "lamella/solvers/melp/point_grid.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lamella::melp {
 namespace {
@@ -50,6 +51,32 @@ Neighbors joined(std::size_t count, const std::vector<Rows>& blocks, const FilmK
     return all;
 }
 
+void tidy(std::vector<RegionPair>& pairs) {
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
+/// Pairs of regions that one block of particles meets.
+class MetRegions {
+public:
+    explicit MetRegions(std::size_t regions) : last_(regions, -1) {}
+
+    void meet(std::int32_t a, std::int32_t b) {
+        std::int32_t& last = last_[static_cast<std::size_t>(b)];
+        if (a > b || last == a) return;
+        last = a;
+        pairs_.push_back({a, b});
+    }
+    std::vector<RegionPair> tidied() && {
+        tidy(pairs_);
+        return std::move(pairs_);
+    }
+
+private:
+    std::vector<std::int32_t> last_;  // that each was met by: particles of one region mostly stand together
+    std::vector<RegionPair> pairs_;
+};
+
 }  // namespace
 
 NeighborLists find_neighbors(std::span<const Vec3> position,
@@ -60,55 +87,36 @@ NeighborLists find_neighbors(std::span<const Vec3> position,
     constexpr std::size_t kBlock = 256;
     const std::size_t count = position.size();
     std::vector<Rows> same((count + kBlock - 1) / kBlock), other(same.size());
+    std::vector<std::vector<RegionPair>> met(same.size());
+    const std::int32_t regions = region.empty() ? 0 : *std::max_element(region.begin(), region.end()) + 1;
     parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
         Rows& mine = same[first / kBlock];
         Rows& theirs = other[first / kBlock];
+        MetRegions touching(static_cast<std::size_t>(regions));
         PointGrid::Found near;
         for (std::size_t i = first; i < last; ++i) {
             grid.find_within(position[i], support_radius, near);
             for (std::size_t k = 0; k < near.count; ++k) {
                 const std::uint32_t j = near.index[k];
                 if (j == i) continue;
-                if (region[i] != region[j])
+                if (region[i] != region[j]) {
                     theirs.add(j, near.square[k]);
-                else if (dot(normal[i], normal[j]) > kAgreeing)
+                    touching.meet(region[i], region[j]);
+                } else if (dot(normal[i], normal[j]) > kAgreeing) {
                     mine.add(j, near.square[k]);
+                }
             }
             mine.close_row();
             theirs.close_row();
         }
+        met[first / kBlock] = std::move(touching).tidied();
     });
     const FilmKernel kernel{support_radius};
-    return {joined(count, same, kernel), joined(count, other, kernel)};
-}
-
-std::vector<std::array<std::int32_t, 2>> touching_regions(const Neighbors& other,
-                                                          std::span<const std::int32_t> region) {
-    using Pair = std::array<std::int32_t, 2>;
-    constexpr std::size_t kBlock = 1024;
-    std::vector<std::vector<Pair>> found((other.size() + kBlock - 1) / kBlock);
-    const auto tidy = [](std::vector<Pair>& pairs) {
-        std::sort(pairs.begin(), pairs.end());
-        pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    };
-    const std::int32_t regions = region.empty() ? 0 : *std::max_element(region.begin(), region.end()) + 1;
-    parallel_blocks(other.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-        std::vector<Pair>& mine = found[begin / kBlock];
-        // The last region that each was noted with: particles of one mostly stand together.
-        std::vector<std::int32_t> noted(static_cast<std::size_t>(regions), -1);
-        for (std::size_t i = begin; i < end; ++i)
-            for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
-                const std::int32_t a = region[i], b = region[other.index[k]];
-                if (a > b || noted[static_cast<std::size_t>(b)] == a) continue;
-                noted[static_cast<std::size_t>(b)] = a;
-                mine.push_back({a, b});
-            }
-        tidy(mine);
-    });
-    std::vector<Pair> all;
-    for (const std::vector<Pair>& pairs : found) all.insert(all.end(), pairs.begin(), pairs.end());
-    tidy(all);
-    return all;
+    NeighborLists lists{joined(count, same, kernel), joined(count, other, kernel)};
+    for (const std::vector<RegionPair>& pairs : met)
+        lists.touching.insert(lists.touching.end(), pairs.begin(), pairs.end());
+    tidy(lists.touching);
+    return lists;
 }
 
 }  // namespace lamella::melp

@@ -25,18 +25,19 @@ struct Neighbors {
     std::size_t end(std::size_t i) const { return start[i + 1]; }
 };
 
+/// Two regions, the smaller one first.
+using RegionPair = std::array<std::int32_t, 2>;
+
 /// Pairs of one region whose normals agree (n_i . n_j > 0.2): the two sides of a film that is nearly pinched do not see
 /// each other. Pairs of two regions, whatever their normals, stand in `other`.
 struct NeighborLists {
-    Neighbors same;   ///< of one region
-    Neighbors other;  ///< of two regions
+    Neighbors same;                      ///< of one region
+    Neighbors other;                     ///< of two regions
+    std::vector<RegionPair> touching{};  ///< every two regions that have a pair in `other`, ascending
 };
 NeighborLists find_neighbors(std::span<const Vec3> position,
                              std::span<const Vec3> normal,
                              std::span<const std::int32_t> region,
                              double support_radius);
-
-/// Every two regions that have a pair in the list, ascending, the smaller one first.
-std::vector<std::array<std::int32_t, 2>> touching_regions(const Neighbors& other, std::span<const std::int32_t> region);
 
 }  // namespace lamella::melp

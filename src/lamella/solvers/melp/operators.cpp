@@ -3,6 +3,8 @@
 #include "lamella/core/parallel.h"
 #include "lamella/solvers/melp/loops.h"
 
+#include <algorithm>
+
 namespace lamella::melp {
 namespace {
 
@@ -108,16 +110,23 @@ std::vector<Vec3> roughness(const Geometry& g, std::span<const Vec3> w, Beyond b
 }
 
 std::vector<Vec3> steady_normals(const Geometry& g, std::span<const Vec3> last) {
-    auto result = sum_over_neighbors<Vec3>(g, [&](Vec3& sum, std::size_t, std::size_t j, std::size_t k) {
+    // How much normals agree over the kernel is 0.87 on the ridge of a Plateau border (cos 30 degrees), 0.82 where a
+    // film folds to 110 degrees. An average over the kernel would flatten borders, so it takes over below them only.
+    constexpr double kBorder = 0.86, kSharp = 0.80;
+    auto mean = sum_over_neighbors<Vec3>(g, [&](Vec3& sum, std::size_t, std::size_t j, std::size_t k) {
         sum += (g.area[j] * g.neighbors.same.weight[k]) * g.normal[j];
     });
     add_over_images(g, [&](std::size_t i, std::size_t k) {
-        result[i] += (g.area[g.images.index[k]] * g.images.weight[k]) * g.images.normal[k];
+        mean[i] += (g.area[g.images.index[k]] * g.images.weight[k]) * g.images.normal[k];
     });
     const double own = g.neighbors.same.kernel.value(0.0);
+    std::vector<Vec3> result(mean.size());
     for_each_particle(result.size(), [&](std::size_t i) {
-        result[i] += (g.area[i] * own) * g.normal[i];
-        const Vec3 between = result[i] + norm(result[i]) * last[i];
+        mean[i] += (g.area[i] * own) * g.normal[i];  // weights sum to one: areas are one over their sum
+        const double agreement = norm(mean[i]);
+        const double sharp = std::clamp((kBorder - agreement) / (kBorder - kSharp), 0.0, 1.0);
+        const Vec3 fold = ((1.0 - sharp) * agreement) * g.normal[i] + sharp * mean[i];
+        const Vec3 between = fold + norm(fold) * last[i];
         const double length = norm(between);
         result[i] = length > 0.0 ? between / length : last[i];
     });

@@ -134,13 +134,13 @@ std::size_t particles_on(double area, double spacing) {
 }
 
 /// Pairs of bubbles with a film between them that start from the mesh.
-std::vector<std::array<std::int32_t, 2>> joined_regions(const FoamMesh& mesh,
-                                                        const IdVector<RegionId, std::optional<Ball>>& loose,
-                                                        const std::vector<Gas>& gas) {
+std::vector<RegionPair> joined_regions(const FoamMesh& mesh,
+                                       const IdVector<RegionId, std::optional<Ball>>& loose,
+                                       const std::vector<Gas>& gas) {
     IdVector<RegionId, std::int32_t> here(mesh.regions.size());
     for (std::size_t r = 0; r < gas.size(); ++r)
         here[static_cast<RegionId>(gas[r].region)] = static_cast<std::int32_t>(r);
-    std::vector<std::array<std::int32_t, 2>> joined;
+    std::vector<RegionPair> joined;
     for (const mesh::Face& face : mesh.faces) {
         const auto closed = [&](RegionId r) { return mesh.regions[r].kind == RegionKind::kClosed && !loose[r]; };
         if (!closed(face.back) || !closed(face.front)) continue;

@@ -17,11 +17,11 @@ namespace lamella::melp {
 struct Start {
     CoarseParticles coarse;
     FineParticles fine;
-    std::vector<Gas> gas;                               ///< per region of particles
-    std::vector<EvenFilm> even;                         ///< per region of particles
-    Rims rims;                                          ///< what holds films that are not closed
-    double spacing = 0.0;                               ///< of the coarse particles: sqrt(area / number) [m]
-    std::vector<std::array<std::int32_t, 2>> joined{};  ///< regions that share films from the start
+    std::vector<Gas> gas;              ///< per region of particles
+    std::vector<EvenFilm> even;        ///< per region of particles
+    Rims rims;                         ///< what holds films that are not closed
+    double spacing = 0.0;              ///< of the coarse particles: sqrt(area / number) [m]
+    std::vector<RegionPair> joined{};  ///< regions that share films from the start
 };
 
 /// Every closed region of the problem gets particles on all of its surface, normals outward; a film between two of them
