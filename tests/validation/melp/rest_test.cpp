@@ -109,5 +109,30 @@ TEST(Rest, FliesOnAtItsSpeed) {
     }
 }
 
+/// Forces between films are taken along their normals only, and spikes at folds are pulled back: what that costs is
+/// given to the pair as a whole. (It had lost nine tenths of its speed at once before.)
+TEST(Rest, KeepsTheMomentumOfUnequalBubblesThatCollideAndJoin) {
+    for (const char* ratio : {"0", "4"}) {
+        auto solver = solver_of(std::string("[material]\nsurface_tension = 0.025\n"
+                                            "[[bubble]]\ncenter = [0, 0, 0]\nradius = 0.03\nvelocity = [0.3, 0.1, 0]\n"
+                                            "[[bubble]]\ncenter = [0.0505, 0, 0]\nradius = 0.02\n"
+                                            "velocity = [-0.3, 0.1, 0]\n[resolution]\nedge_length = 0.003\n[melp]\n"
+                                            "fine_ratio = ") +
+                                ratio);
+        solver->start({});
+        const auto momentum = [&] {
+            return Vec3{{scalar(*solver, "momentum_x"), scalar(*solver, "momentum_y"), scalar(*solver, "momentum_z")}};
+        };
+        const Vec3 before = momentum();
+        advance_to(*solver, 0.02);
+        const double thickness = scalar(*solver, "film_thickness_mean");
+        const double film = scalar(*solver, "liquid_mass") * std::sqrt(2.0 * 0.025 / (1000.0 * thickness));  // m c
+        std::printf("fine_ratio %s: momentum %.1e of m c, of %.1e\n", ratio, norm(momentum() - before) / film,
+                    norm(before) / film);
+        EXPECT_GT(norm(before) / film, 0.01);
+        EXPECT_LT(norm(momentum() - before) / film, 1e-7);
+    }
+}
+
 }  // namespace
 }  // namespace lamella::melp

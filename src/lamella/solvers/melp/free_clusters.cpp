@@ -1,6 +1,7 @@
 #include "lamella/solvers/melp/free_clusters.h"
 
 #include "lamella/linalg/dense.h"
+#include "lamella/linalg/small_cholesky.h"
 #include "lamella/solvers/melp/loops.h"
 
 #include <algorithm>
@@ -81,11 +82,38 @@ std::vector<std::size_t> clusters(const Geometry& geometry, std::size_t regions)
     return cluster;
 }
 
+std::vector<Tensor> flight_maps(const CoarseParticles& coarse, const Geometry& geometry, std::size_t regions) {
+    std::vector<std::array<double, 9>> along(regions);
+    std::vector<double> area(regions, 0.0);
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+        const std::size_t r = region_of(coarse, i);
+        const Vec3& n = geometry.normal[i];
+        area[r] += geometry.area[i];
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t m = 0; m < 3; ++m) along[r][3 * k + m] += geometry.area[i] * n[k] * n[m];
+    }
+    std::vector<Tensor> maps(regions);
+    for (std::size_t r = 0; r < regions; ++r)
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::array<double, 9> matrix = along[r];
+            std::array<double, 3> row{};
+            row[k] = area[r] / 3.0;
+            maps[r][k][k] = 1.0;  // of shreds, whose normals are too few
+            if (linalg::solve_positive<3>(matrix, row)) maps[r][k] = {{row[0], row[1], row[2]}};
+        }
+    return maps;
+}
+
 FreeCluster::FreeCluster(const CoarseParticles& coarse,
                          const Geometry& geometry,
                          std::vector<std::size_t> members,
-                         std::vector<Rigid> directions)
-    : coarse_(coarse), geometry_(geometry), members_(std::move(members)), directions_(std::move(directions)) {
+                         std::vector<Rigid> directions,
+                         std::span<const Tensor> flight)
+    : coarse_(coarse),
+      geometry_(geometry),
+      members_(std::move(members)),
+      directions_(std::move(directions)),
+      flight_(flight) {
     for (const std::size_t i : members_) {
         center_ += geometry.area[i] * coarse.position[i];
         length_ += geometry.area[i];
@@ -135,10 +163,12 @@ void FreeCluster::remove_resultant(std::vector<double>& values,
     });
 }
 
-/// A vector at a particle and its moment about the center, over the cluster's size, in the cluster's directions.
+/// A vector at a particle, as its region flies after it, and its moment about the center, over the cluster's size, in
+/// the cluster's directions.
 Rigid FreeCluster::rigid(std::size_t i, const Vec3& f) const {
     const Vec3 moment = cross(coarse_.position[i] - center_, f) / length_;
-    const Rigid all{f[0], f[1], f[2], moment[0], moment[1], moment[2]};
+    const Vec3 push = flight_.empty() ? f : flight_[region_of(coarse_, i)] * f;
+    const Rigid all{push[0], push[1], push[2], moment[0], moment[1], moment[2]};
     Rigid along{};
     for (std::size_t d = 0; d < directions_.size(); ++d)
         for (std::size_t a = 0; a < kRigid; ++a) along[d] += directions_[d][a] * all[a];
@@ -148,7 +178,8 @@ Rigid FreeCluster::rigid(std::size_t i, const Vec3& f) const {
 std::vector<FreeCluster> free_clusters(const CoarseParticles& coarse,
                                        const Geometry& geometry,
                                        std::span<const Gas> gas,
-                                       std::span<const RimPiece> rims) {
+                                       std::span<const RimPiece> rims,
+                                       std::span<const Tensor> flight) {
     const std::vector<std::size_t> cluster_of = clusters(geometry, gas.size());
     std::vector<std::vector<std::size_t>> members(gas.size());
     for (std::size_t i = 0; i < coarse.size(); ++i) members[cluster_of[region_of(coarse, i)]].push_back(i);
@@ -162,7 +193,7 @@ std::vector<FreeCluster> free_clusters(const CoarseParticles& coarse,
             std::any_of(group.begin(), group.end(), [&](std::size_t i) { return gas[region_of(coarse, i)].burst; });
         if (torn) continue;
         if (rim == nullptr)
-            free.emplace_back(coarse, geometry, std::move(group), all_directions());
+            free.emplace_back(coarse, geometry, std::move(group), all_directions(), flight);
         else if (rim->kind == RimKind::kPlate)
             free.emplace_back(coarse, geometry, std::move(group), directions_on(rim->b, OnPlate::kSlides));
     }

@@ -17,16 +17,23 @@ namespace lamella::melp {
 /// A force and its moment over a length.
 using Rigid = std::array<double, 6>;
 
+/// How a region flies when forces along its normals push it: mass M^-1 / 3 with M = sum m n n^T, times their sum, over
+/// the mass. The unit tensor on a sphere. Films without fine particles fly as their normals say, all of a region alike:
+/// between bubbles of different shapes forces that cancel push a pair off.
+std::vector<Tensor> flight_maps(const CoarseParticles& coarse, const Geometry& geometry, std::size_t regions);
+
 /// Bubbles that touch, free of rims: films push and twist them by nothing as a whole. Forces that have lost their part
 /// along the film do, a little. [method sheet 16.4 c'] Half a bubble on a plate is free in some directions.
 class FreeCluster {
 public:
     /// @param members     coarse particles
     /// @param directions  in which it is free
+    /// @param flight      of each region, see flight_maps(); empty: forces are what counts
     FreeCluster(const CoarseParticles& coarse,
                 const Geometry& geometry,
                 std::vector<std::size_t> members,
-                std::vector<Rigid> directions);
+                std::vector<Rigid> directions,
+                std::span<const Tensor> flight = {});
 
     /// Takes from values along the normals what pushes and twists: of all changes share_i e_i . z, with e_i the rigid
     /// motions along the normal, the one after which sum_i (values_i n_i + beside_i) has no resultant and no moment.
@@ -41,6 +48,7 @@ private:
     const Geometry& geometry_;
     std::vector<std::size_t> members_;
     std::vector<Rigid> directions_;
+    std::span<const Tensor> flight_;
     Vec3 center_;
     double length_ = 0.0;
 };
@@ -49,10 +57,12 @@ private:
 std::vector<std::size_t> clusters(const Geometry& geometry, std::size_t regions);
 
 /// All that fly, and half bubbles on plates; none that has burst.
+/// @param flight  for those that fly, see FreeCluster
 std::vector<FreeCluster> free_clusters(const CoarseParticles& coarse,
                                        const Geometry& geometry,
                                        std::span<const Gas> gas,
-                                       std::span<const RimPiece> rims);
+                                       std::span<const RimPiece> rims,
+                                       std::span<const Tensor> flight);
 
 /// The areas that gas pushes on [m^2]: those of kernels, which are right to a ten-thousandth on even layouts; where
 /// other bubbles are near, and films fold, those of Voronoi cells. The gas of a closed bubble pushes it nowhere and

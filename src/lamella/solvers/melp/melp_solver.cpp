@@ -247,6 +247,7 @@ NormalStep MelpSolver::push_along_normals(double dt) {
                                           .velocity = before,
                                           .internal = marangoni_,
                                           .external = external,
+                                          .even = fine_.size() == 0,
                                           .floating = options_.floating,
                                           .junction_correction = options_.junction_correction,
                                           .damping = options_.damping,
@@ -303,24 +304,6 @@ void MelpSolver::move_coarse(double dt, const NormalStep& step) {
     });
     coarse_.frame_normal = steady_normals(geometry_, coarse_.frame_normal);
     pull_back_spikes(dt);
-}
-
-/// Where films fold at a junction, cohesion is stronger than the particle's own film: without a limit single particles
-/// leave their film there and stretch it until it tears. What a particle stands out of the patch of its neighbors
-/// beyond a tenth of the spacing is taken back by and by, and so is the velocity with which it left.
-void MelpSolver::pull_back_spikes(double dt) {
-    constexpr double kFree = 0.1;  // spacings
-    constexpr double kShare = 0.3;
-    for (std::size_t i = 0; i < coarse_.size(); ++i) {
-        const double height = geometry_.patch[i].c[0], most = kFree * spacing_;
-        const double back = kShare * (height - std::clamp(height, -most, most));
-        if (back == 0.0) continue;
-        const Vec3& n = geometry_.patch[i].frame.normal;
-        coarse_.position[i] += back * n;
-        gas_[static_cast<std::size_t>(coarse_.region[i])].volume += geometry_.area[i] * back;
-        const double away = -std::copysign(1.0, back) * dot(coarse_.velocity[i], n);
-        if (away > 0.0) coarse_.velocity[i] += std::min(away * dt, std::abs(back)) / dt * std::copysign(1.0, back) * n;
-    }
 }
 
 /// Fine particles go with the flow, onto the film where it is now, and stretch with it.

@@ -67,17 +67,21 @@ void MelpSolver::give_back_to_liquid(const std::vector<Vec3>& momentum) {
     add_along_normals(cluster, added);
 }
 
-/// The same for films without fine particles, which fly as their motion along the normals says; of bubbles that touch
-/// no other. What pulling back spikes takes at folds does not cancel over a cluster, and would push it all the time:
-/// partitions were 3 % flatter.
+/// The same for films without fine particles, which fly as their motion along the normals says.
 void MelpSolver::give_back_to_even_films(const std::vector<Vec3>& drift) {
     if (fine_.size() > 0) return;
     const std::vector<std::ptrdiff_t> cluster = flying_clusters();
-    std::vector<int> bubbles(gas_.size(), 0);
-    for (const std::ptrdiff_t c : cluster)
-        if (c >= 0) ++bubbles[static_cast<std::size_t>(c)];
-    std::vector<Vec3> missing = region_drifts_now();
-    for (std::size_t r = 0; r < gas_.size(); ++r) missing[r] = bubbles[r] == 1 ? drift[r] - missing[r] : Vec3{};
+    const std::vector<Vec3> now = region_drifts_now();
+    std::vector<Vec3> missing(gas_.size());
+    std::vector<double> volume(gas_.size(), 0.0);
+    for (std::size_t r = 0; r < gas_.size(); ++r) {
+        if (cluster[r] < 0) continue;
+        const auto c = static_cast<std::size_t>(cluster[r]);
+        missing[c] += even_[r].liquid_volume * (drift[r] - now[r]);
+        volume[c] += even_[r].liquid_volume;
+    }
+    for (std::size_t r = 0; r < gas_.size(); ++r)
+        if (volume[r] > 0.0) missing[r] = missing[r] / volume[r];
     add_along_normals(cluster, missing);
 }
 

@@ -237,7 +237,8 @@ private:
 NormalStep move_along_normals(const NormalProblem& p) {
     const std::size_t count = p.coarse.size();
     const Pairs pairs = pair_strengths(p);
-    const std::vector<FreeCluster> free = free_clusters(p.coarse, p.geometry, p.gas, p.rims);
+    const std::vector<Tensor> maps = p.even ? flight_maps(p.coarse, p.geometry, p.gas.size()) : std::vector<Tensor>{};
+    const std::vector<FreeCluster> free = free_clusters(p.coarse, p.geometry, p.gas, p.rims, maps);
     const std::vector<double> gas_area = gas_areas(p.coarse, p.geometry, p.gas, p.rims);
     std::vector<double> force = forces(p, pairs, gas_area);
     std::vector<Vec3> beside(p.internal.begin(), p.internal.end());

@@ -24,6 +24,7 @@ struct NormalProblem {
     std::span<const double> velocity;           ///< along the normals, at the start of the step [m/s]
     std::span<const Vec3> internal;             ///< forces along the film that the films exert on each other [N]
     std::span<const Vec3> external;             ///< forces from outside, e.g. weight [N]
+    bool even;                                  ///< films without fine particles
     bool floating;                              ///< the air carries the external forces on free bubbles as a whole
     double junction_correction;                 ///< beta of the cohesion
     double damping;                             ///< of all motion along the normals [1/s]
