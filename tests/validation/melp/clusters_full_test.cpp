@@ -75,15 +75,15 @@ TEST(UnequalBubbles, HaveThePartitionThatTheirPressuresAskFor) {
     };
     const std::array<Case, 12> cases{{{0.04978, 0.01629, 30.0, 0.00267},
                                       {0.04957, 0.02112, 20.0, 0.0024},
-                                      {0.04926, 0.02616, 13.333, 0.0035},
-                                      {0.04885, 0.03134, 8.571, 0.0035},
-                                      {0.04837, 0.03661, 5.0, 0.0035},
+                                      {0.04926, 0.02616, 13.333, 0.0025},
+                                      {0.04885, 0.03134, 8.571, 0.0025},
+                                      {0.04837, 0.03661, 5.0, 0.0025},
                                       {0.04783, 0.04193, 2.222, 0.0025},
                                       {0.05, 0.02, 22.01, 0.0028},
-                                      {0.05, 0.025, 14.83, 0.0035},
-                                      {0.05, 0.03, 9.97, 0.0035},
-                                      {0.05, 0.035, 6.44, 0.0035},
-                                      {0.05, 0.04, 3.77, 0.0035},
+                                      {0.05, 0.025, 14.83, 0.0025},
+                                      {0.05, 0.03, 9.97, 0.0025},
+                                      {0.05, 0.035, 6.44, 0.0025},
+                                      {0.05, 0.04, 3.77, 0.0025},
                                       {0.05, 0.045, 1.68, 0.0025}}};
     for (const Case& c : cases) {
         auto solver = settling_cluster(
@@ -94,9 +94,9 @@ TEST(UnequalBubbles, HaveThePartitionThatTheirPressuresAskFor) {
         std::printf("curvature %.3f of %.3f, of the caps %.3f; angle %.2f\n", curvature, c.curvature,
                     1.0 / small.radius - 1.0 / large.radius, angle_between(large, small));
         std::fflush(stdout);
-        // The difference of the caps' curvatures, each known to a quarter of a percent: flat partitions miss the aim of
-        // 1.5 %.
-        EXPECT_NEAR(curvature, c.curvature, std::max(0.015 * c.curvature, 0.005 / c.small));
+        // The difference of the caps' curvatures, each known to a quarter of a percent at best: the two flattest
+        // partitions may miss the aim of 1.5 %.
+        EXPECT_NEAR(curvature, c.curvature, std::max(0.015 * c.curvature, 0.003 / c.small));
         EXPECT_NEAR(angle_between(large, small), 120.0, 1.2);
         for (const auto& [cap, r] : {std::pair{large, 0}, {small, 1}})
             EXPECT_NEAR(solver->gas()[r].balanced * cap.radius / (4.0 * 0.0725), 1.0, 0.01);
