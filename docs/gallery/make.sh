@@ -82,6 +82,7 @@ fingers-of-particles|melp/rayleigh-taylor-small|14||Thick film above thin film, 
 deforming-rectangle|melp/deforming-rectangle-small|24||The upper side of a frame swings to the front, and the film with it
 black-spots|melp/black-spots-small|12||Black spots rise in a film whose frame swings out
 stirred-film|melp/stirred-film-small|10|--camera -90,58,1.33|A whirl of air has stirred a film
+heated-bubble|melp/heated-bubble-small|16|--field temperature --camera 20,-10|A warm spot beside a bubble sends its film up
 half-bubble|melp/half-bubble-small|10||Half a bubble on a plate, in the wind
 ball-on-a-film|melp/ball-on-film-small|5||A ball has fallen on a film, which catches it
 stick-of-particles|melp/stick-small|18|--camera -60,35 --exposure 2|A stick was dragged through a film that is thicker above
