@@ -88,6 +88,7 @@ ball-on-a-film|melp/ball-on-film-small|5||A ball has fallen on a film, which cat
 stick-of-particles|melp/stick-small|18|--camera -60,35 --exposure 2|A stick was dragged through a film that is thicker above
 bursting-disk|melp/burst-disk-small|7||A film in a ring was pricked: the hole's edge gathers the liquid
 bursting-giant|melp/giant-bubble-small|4||A giant bubble, pricked from the right, a few milliseconds later
+different-sizes|melp/different-sizes-small|last|--camera -90,5|Two bubbles have come down on half a bubble, and lean
 four-bubbles|melp/four-bubbles-small|10|--exposure 0.8|Four bubbles have flown together
 thirteen-bubbles|melp/thirteen-bubbles-small|6|--exposure 0.6|Twelve bubbles have flown at one in their middle
 rt-double-bubble|melp/rt-double-bubble-small|4|--environment window|Heavy liquid sinks through the film between two bubbles
