@@ -82,11 +82,13 @@ fingers-of-particles|melp/rayleigh-taylor-small|14||Thick film above thin film, 
 deforming-rectangle|melp/deforming-rectangle-small|24||The upper side of a frame swings to the front, and the film with it
 black-spots|melp/black-spots-small|12||Black spots rise in a film whose frame swings out
 stirred-film|melp/stirred-film-small|10|--camera -90,58,1.33|A whirl of air has stirred a film
+heated-bubble|melp/heated-bubble-small|16|--field temperature --camera 20,-10|A warm spot beside a bubble sends its film up
 half-bubble|melp/half-bubble-small|10||Half a bubble on a plate, in the wind
 ball-on-a-film|melp/ball-on-film-small|5||A ball has fallen on a film, which catches it
 stick-of-particles|melp/stick-small|18|--camera -60,35 --exposure 2|A stick was dragged through a film that is thicker above
 bursting-disk|melp/burst-disk-small|7||A film in a ring was pricked: the hole's edge gathers the liquid
 bursting-giant|melp/giant-bubble-small|4||A giant bubble, pricked from the right, a few milliseconds later
+different-sizes|melp/different-sizes-small|last|--camera -90,5|Two bubbles have come down on half a bubble, and lean
 four-bubbles|melp/four-bubbles-small|6|--exposure 0.8|Four bubbles have flown together
 thirteen-bubbles|melp/thirteen-bubbles|12|--exposure 0.6|Thirteen joined bubbles drain over warm air
 rt-double-bubble|melp/rt-double-bubble-small|4|--environment window|Heavy liquid sinks through the film between two bubbles

@@ -1,5 +1,6 @@
 #include "lamella/measure/film_measures.h"
 
+#include "lamella/measure/detail/flat_ends.h"
 #include "lamella/measure/detail/sphere_fit.h"
 #include "lamella/measure/film_mesh.h"
 #include "lamella/mesh/angles.h"
@@ -121,8 +122,10 @@ IdVector<RegionId, Vec3> centroids(const FoamMesh& mesh, const IdVector<RegionId
 
 void measure_regions(const FilmMesh& films, const Films& gathered, const sim::Surface& surface, FilmMeasures& out) {
     const FoamMesh& mesh = films.mesh;
-    const auto volume = mesh::region_volumes(mesh);
-    const auto centroid = centroids(mesh, volume);
+    const std::optional<FoamMesh> ended = films.connected ? detail::with_flat_ends(mesh) : std::nullopt;
+    const FoamMesh& whole = ended ? *ended : mesh;
+    const auto volume = mesh::region_volumes(whole);
+    const auto centroid = centroids(whole, volume);
     IdVector<RegionId, double> area(mesh.regions.size());
     for (const auto& [pair, film] : gathered) {
         area[pair.first] += film.area;

@@ -22,10 +22,10 @@ struct FilmMeasure {
 /// A bubble.
 struct RegionMeasure {
     std::int32_t id = 0;
-    double volume = 0.0;    ///< [m^3]; NaN where the triangles are not connected
+    double volume = 0.0;    ///< [m^3], with a flat end where films leave it open; NaN where triangles are not connected
     double pressure = 0.0;  ///< above the outside [Pa]; NaN where the frame does not tell
     double area = 0.0;      ///< of all films around it [m^2]
-    Vec3 centroid;          ///< of its gas [m]
+    Vec3 centroid;          ///< of its gas, likewise [m]
 };
 
 /// Angles against the law that holds at rest [rad]; NaN without any.

@@ -57,6 +57,22 @@ TEST(FilmMeasures, OfASphereAreThoseOfItsFormulas) {
     }
 }
 
+/// Films of which wires or plates close in the gas: flat ends count.
+TEST(FilmMeasures, OfGasBeyondOpenFilmsReachToTheirRims) {
+    const auto as_bubble = [](mesh::FoamMesh films) {
+        films.regions[mesh::RegionId{1}].kind = mesh::RegionKind::kClosed;
+        return measured(film_frame(films)).regions.at(0);
+    };
+    const Vec3 center{{1.0, 2.0, -4.0}}, axis{{0.0, 0.6, 0.8}};
+    constexpr double kEdge = 0.1, kFine = kEdge * kEdge;
+    const RegionMeasure half = as_bubble(mesh::hemisphere(center, axis, 1.0, kEdge));
+    EXPECT_NEAR(half.volume, 2.0 / 3.0 * kPi, 2.0 * kFine);
+    EXPECT_NEAR(norm(half.centroid - (center + 0.375 * axis)), 0.0, kFine);
+    const RegionMeasure tube = as_bubble(mesh::cylinder(center, axis, 1.0, 1.5, kEdge));  // ends that look away
+    EXPECT_NEAR(tube.volume, 1.5 * kPi, 2.0 * kFine);
+    EXPECT_NEAR(norm(tube.centroid - center), 0.0, 1e-12);
+}
+
 TEST(FilmMeasures, OfTheExactDoubleBubbleAreItsClosedForm) {
     const mesh::DoubleBubble exact = mesh::double_bubble_of_volumes(1.0, 0.5);
     double before = 0.0;

@@ -56,6 +56,57 @@ TEST(Heat, DrivesSurfactantUntilTheTensionIsEven) {
     EXPECT_NEAR(scalar(*solver, "liquid_error"), 0.0, 1e-12);
 }
 
+/// A warm spot beside a floating bubble thins the film, which then rises. Pulls of the film on itself turn nothing, nor
+/// do forces along the normals of a sphere: about its center only the weight of the liquid turns it, and the drag.
+TEST(Heat, OfAWarmSpotMakesFilmRise) {
+    constexpr double kDrag = 2e-4, kFrom = 0.4, kTo = 0.6;
+    auto solver = bubble(800,
+                         "floating = true\nsteps_per_period = 0.0\nlargest_step = 5e-3\nair_drag = 2e-4\n"
+                         "[melp.heat]\nsource = \"ball\"\ncenter = [0.035, 0.0, -0.035]\nreach = 0.025\n"
+                         "temperature = 299.15\n",
+                         "gravity = [0.0, 0.0, -9.81]");
+    struct Turn {
+        double momentum = 0.0, weight = 0.0, drag = 0.0;
+    };
+    const auto turn_about_y = [&] {
+        const CoarseParticles& coarse = solver->coarse();
+        const Films& film = solver->films();
+        Vec3 center;
+        for (std::size_t i = 0; i < coarse.size(); ++i)
+            center += coarse.position[i] / static_cast<double>(coarse.size());
+        Turn turn;
+        for (std::size_t i = 0; i < coarse.size(); ++i) {
+            const Vec3 arm = coarse.position[i] - center;
+            const double mass = 1000.0 * film.liquid_volume[i];
+            turn.momentum += mass * cross(arm, film.along[i])[1];
+            turn.weight += mass * 9.81 * arm[0];
+            turn.drag += kDrag * solver->geometry().area[i] * cross(arm, film.along[i])[1];
+        }
+        return turn;
+    };
+    advance_to(*solver, kFrom);
+    const Turn first = turn_about_y();
+    Turn before = first, sum;
+    for (double time = kFrom; time < kTo; time = solver->time()) {
+        solver->advance(kTo);
+        const Turn now = turn_about_y();
+        sum.weight += 0.5 * (solver->time() - time) * (before.weight + now.weight);
+        sum.drag += 0.5 * (solver->time() - time) * (before.drag + now.drag);
+        before = now;
+    }
+    double warm = 0.0, rise = 0.0;
+    for (std::size_t i = 0; i < solver->coarse().size(); ++i) {
+        const double heat = (solver->films().temperature[i] - kRest) * solver->films().liquid_volume[i];
+        warm += heat;
+        rise += heat * solver->films().along[i][2];
+    }
+    const double balance = (before.momentum - first.momentum + sum.drag) / sum.weight;
+    std::printf("warm spot: what turns the film %.4f of the weight, warm film rises at %.3f m/s\n", balance,
+                rise / warm);
+    EXPECT_NEAR(balance, 1.0, 0.05);
+    EXPECT_GT(rise / warm, 0.1);
+}
+
 /// Air that turns as a whole takes a disk of film along: its angular velocity is W (1 - exp(-drag t / (rho eta))).
 TEST(Wind, ThatTurnsSpinsAFilmUp) {
     constexpr double kSpin = 4.0, kTime = 0.4, kDrag = 1e-3;

@@ -53,6 +53,37 @@ const RimPiece* rim_of(std::span<const RimPiece> rims, std::size_t region) {
     return nullptr;
 }
 
+/// The middle of the plate's part that a film closes in: of the triangles between o, the mean of the film next to the
+/// plate, and the rim, areas and centroids are as (x - o) . n and o + 2/3 (x - o). Sums along the rim are those over
+/// the film near it, with weights that only depend on the height.
+Vec3 middle_on_plate(const CoarseParticles& coarse,
+                     const Geometry& geometry,
+                     const RimPiece& rim,
+                     const std::vector<std::size_t>& members) {
+    if (rim.kind != RimKind::kPlate) return rim.a;
+    const double reach = geometry.neighbors.same.kernel.support_radius;
+    const auto weight = [&](std::size_t i) {
+        const double q = dot(coarse.position[i] - rim.a, rim.b) / reach;
+        return geometry.area[i] * std::pow(std::max(1.0 - q * q, 0.0), 2.0);
+    };
+    const auto on_plate = [&](const Vec3& x) { return x - dot(x - rim.a, rim.b) * rim.b; };
+    Vec3 middle, moment;
+    double all = 0.0, area = 0.0;
+    for (const std::size_t i : members) {
+        middle += weight(i) * on_plate(coarse.position[i]);
+        all += weight(i);
+    }
+    if (!(all > 0.0)) return rim.a;
+    middle = middle / all;
+    for (const std::size_t i : members) {
+        const Vec3 arm = on_plate(coarse.position[i]) - middle;
+        const double share = weight(i) * dot(arm, geometry.normal[i]);
+        area += share;
+        moment += share * arm;
+    }
+    return area > 0.0 ? middle + 2.0 / 3.0 * moment / area : middle;
+}
+
 /// How much the film turns within the kernel's reach of a particle, squared: the mean of 1 - n . n'. The same all over
 /// a sphere, large on folds.
 double fold(const Geometry& geometry, std::size_t i) {
@@ -217,8 +248,11 @@ std::vector<double> gas_areas(const CoarseParticles& coarse,
         if (!gas[r].closed || gas[r].burst || members[r].empty()) continue;
         const RimPiece* rim = rim_of(rims, r);
         auto directions = rim == nullptr ? all_directions() : directions_on(rim->b, OnPlate::kGas);
-        FreeCluster(coarse, geometry, std::move(members[r]), std::move(directions))
-            .remove_resultant(area, nothing, share);
+        // Gas pushes the plate in its middle, and half a bubble the other way there.
+        const Vec3 middle = rim == nullptr ? Vec3{} : middle_on_plate(coarse, geometry, *rim, members[r]);
+        FreeCluster whole(coarse, geometry, std::move(members[r]), std::move(directions));
+        if (rim != nullptr) whole.turn_about(middle);
+        whole.remove_resultant(area, nothing, share);
     }
     return area;
 }

@@ -35,6 +35,9 @@ public:
                 std::vector<Rigid> directions,
                 std::span<const Tensor> flight = {});
 
+    /// Moments count about this point from now on; before, about the members' center.
+    void turn_about(const Vec3& point) { center_ = point; }
+
     /// Takes from values along the normals what pushes and twists: of all changes share_i e_i . z, with e_i the rigid
     /// motions along the normal, the one after which sum_i (values_i n_i + beside_i) has no resultant and no moment.
     void remove_resultant(std::vector<double>& values,
