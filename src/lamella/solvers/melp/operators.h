@@ -33,8 +33,9 @@ enum class Beyond { kVelocity, kDifference };
 /// w minus its average over the kernel: keeps only what varies from particle to particle.
 std::vector<Vec3> roughness(const Geometry& geometry, std::span<const Vec3> w, Beyond beyond);
 
-/// Planes for the next fits: unit normals averaged over the kernel, and with those of the last fits. In the plane of
-/// the fitted normal itself fits swing from face to face of a sharp fold, from one step to the next.
+/// Planes for the next fits: unit normals, at sharp folds and in shreds averaged over the kernel, averaged with those of
+/// the last fits. In the plane of the fitted normal itself fits swing from face to face of a fold, from one step to the
+/// next.
 /// @param last  frame normals of the fits that `geometry` comes from
 std::vector<Vec3> steady_normals(const Geometry& geometry, std::span<const Vec3> last);
 
