@@ -111,8 +111,8 @@ std::vector<Vec3> roughness(const Geometry& g, std::span<const Vec3> w, Beyond b
 
 std::vector<Vec3> steady_normals(const Geometry& g, std::span<const Vec3> last) {
     // How much normals agree over the kernel is 0.87 on the ridge of a Plateau border (cos 30 degrees), 0.82 where a
-    // film folds to 110 degrees. An average over the kernel would flatten borders, so it takes over below them only, and
-    // in shreds, where fits have few neighbors.
+    // film folds to 110 degrees. An average over the kernel would flatten borders, so it takes over below them only,
+    // and in shreds, where fits have few neighbors.
     constexpr double kBorder = 0.86, kSharp = 0.80;
     constexpr std::size_t kFew = 8;
     auto mean = sum_over_neighbors<Vec3>(g, [&](Vec3& sum, std::size_t, std::size_t j, std::size_t k) {
@@ -126,8 +126,9 @@ std::vector<Vec3> steady_normals(const Geometry& g, std::span<const Vec3> last) 
     for_each_particle(result.size(), [&](std::size_t i) {
         mean[i] += (g.area[i] * own) * g.normal[i];  // weights sum to one: areas are one over their sum
         const double agreement = norm(mean[i]);
-        const bool few = g.neighbors.same.end(i) - g.neighbors.same.begin(i) < kFew;
-        const double sharp = few ? 1.0 : std::clamp((kBorder - agreement) / (kBorder - kSharp), 0.0, 1.0);
+        const std::size_t seen =
+            g.neighbors.same.end(i) - g.neighbors.same.begin(i) + g.images.end(i) - g.images.begin(i);
+        const double sharp = seen < kFew ? 1.0 : std::clamp((kBorder - agreement) / (kBorder - kSharp), 0.0, 1.0);
         const Vec3 fold = ((1.0 - sharp) * agreement) * g.normal[i] + sharp * mean[i];
         const Vec3 between = fold + norm(fold) * last[i];
         const double length = norm(between);
