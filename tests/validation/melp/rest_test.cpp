@@ -109,6 +109,21 @@ TEST(Rest, FliesOnAtItsSpeed) {
     }
 }
 
+/// What dampens shapes leaves flying and falling alone, also where steps are twenty times as long as it takes to act:
+/// with the flight of the last step in its place a joined pair fell with a twentieth of its weight.
+TEST(Rest, FallsThroughAirThatDampsShapesToo) {
+    auto solver = solver_of(
+        "[material]\ngravity = [0, 0, -9.81]\n[[bubble]]\ncenter = [0, 0, 0]\nradius = 0.03\n"
+        "[[bubble]]\ncenter = [0.0505, 0, 0]\nradius = 0.02\n[resolution]\nedge_length = 0.003\n[melp]\n"
+        "fine_ratio = 0\ndamping = 12.0\nshape_damping = 20000.0\nsteps_per_period = 0.0\nlargest_step = 0.001\n");
+    solver->start({});
+    advance_to(*solver, 0.05);
+    const double falling = -scalar(*solver, "momentum_z") / scalar(*solver, "liquid_mass");
+    const double exact = 9.81 / 12.0 * (1.0 - std::exp(-12.0 * 0.05));
+    std::printf("falls with %.4f of the closed form\n", falling / exact);
+    EXPECT_NEAR(falling / exact, 1.0, 0.006);  // of implicit steps
+}
+
 /// Forces between films are taken along their normals only, and spikes at folds are pulled back: what that costs is
 /// given to the pair as a whole. (It had lost nine tenths of its speed at once before.)
 TEST(Rest, KeepsTheMomentumOfUnequalBubblesThatCollideAndJoin) {

@@ -1,9 +1,8 @@
 #include "lamella/solvers/melp/films.h"
 
-#include "lamella/linalg/small_cholesky.h"
+#include "lamella/solvers/melp/flight.h"
 
 #include <algorithm>
-#include <array>
 
 namespace lamella::melp {
 namespace {
@@ -21,27 +20,6 @@ std::vector<double> region_areas(const Geometry& geometry, const CoarseParticles
 
 }  // namespace
 
-std::vector<Vec3> region_drifts(const Geometry& geometry,
-                                const CoarseParticles& coarse,
-                                std::span<const double> mass,
-                                std::span<const double> along_normal,
-                                std::size_t regions) {
-    std::vector<std::array<double, 9>> matrix(regions);
-    std::vector<std::array<double, 3>> right(regions);
-    for (std::size_t e = 0; e < coarse.size(); ++e) {
-        const auto r = static_cast<std::size_t>(coarse.region[e]);
-        const Vec3& n = geometry.normal[e];
-        for (std::size_t k = 0; k < 3; ++k) {
-            right[r][k] += mass[e] * along_normal[e] * n[k];
-            for (std::size_t m = 0; m < 3; ++m) matrix[r][3 * k + m] += mass[e] * n[k] * n[m];
-        }
-    }
-    std::vector<Vec3> drift(regions);
-    for (std::size_t r = 0; r < regions; ++r)
-        if (linalg::solve_positive<3>(matrix[r], right[r])) drift[r] = {{right[r][0], right[r][1], right[r][2]}};
-    return drift;
-}
-
 Films films_of(const Geometry& geometry,
                const CoarseParticles& coarse,
                const Gathered& gathered,
@@ -55,7 +33,7 @@ Films films_of(const Geometry& geometry,
         liquid[static_cast<std::size_t>(coarse.region[e])] += gathered.liquid_volume[e];
     std::vector<double> along_normal(count);
     for (std::size_t e = 0; e < count; ++e) along_normal[e] = dot(coarse.velocity[e], geometry.normal[e]);
-    std::vector<Vec3> drift = region_drifts(geometry, coarse, geometry.area, along_normal, even.size());
+    std::vector<Vec3> drift = Flight(geometry, coarse, geometry.area, even.size()).of(along_normal);
     for (std::size_t r = 0; r < even.size(); ++r)
         if (even[r].held) drift[r] = {};
     Films films;

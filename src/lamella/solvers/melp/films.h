@@ -33,16 +33,6 @@ struct Films {
     std::size_t size() const { return thickness.size(); }
 };
 
-/// The uniform velocity of each region that has the momentum of its motion along the normals [m/s]: the U for which
-/// sum m (u . n) n = (sum m n n^T) U. Films without a flow of their own fly with it.
-/// @param mass          per coarse particle, in any unit
-/// @param along_normal  u . n per coarse particle [m/s]
-std::vector<Vec3> region_drifts(const Geometry& geometry,
-                                const CoarseParticles& coarse,
-                                std::span<const double> mass,
-                                std::span<const double> along_normal,
-                                std::size_t regions);
-
 /// @param even  per region
 Films films_of(const Geometry& geometry,
                const CoarseParticles& coarse,

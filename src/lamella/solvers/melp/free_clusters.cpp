@@ -1,7 +1,6 @@
 #include "lamella/solvers/melp/free_clusters.h"
 
 #include "lamella/linalg/dense.h"
-#include "lamella/linalg/small_cholesky.h"
 #include "lamella/solvers/melp/loops.h"
 
 #include <algorithm>
@@ -111,28 +110,6 @@ std::vector<std::size_t> clusters(const Geometry& geometry, std::size_t regions)
     }
     for (std::size_t& r : cluster) r = root(r);
     return cluster;
-}
-
-std::vector<Tensor> flight_maps(const CoarseParticles& coarse, const Geometry& geometry, std::size_t regions) {
-    std::vector<std::array<double, 9>> along(regions);
-    std::vector<double> area(regions, 0.0);
-    for (std::size_t i = 0; i < coarse.size(); ++i) {
-        const std::size_t r = region_of(coarse, i);
-        const Vec3& n = geometry.normal[i];
-        area[r] += geometry.area[i];
-        for (std::size_t k = 0; k < 3; ++k)
-            for (std::size_t m = 0; m < 3; ++m) along[r][3 * k + m] += geometry.area[i] * n[k] * n[m];
-    }
-    std::vector<Tensor> maps(regions);
-    for (std::size_t r = 0; r < regions; ++r)
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::array<double, 9> matrix = along[r];
-            std::array<double, 3> row{};
-            row[k] = area[r] / 3.0;
-            maps[r][k][k] = 1.0;  // of shreds, whose normals are too few
-            if (linalg::solve_positive<3>(matrix, row)) maps[r][k] = {{row[0], row[1], row[2]}};
-        }
-    return maps;
 }
 
 FreeCluster::FreeCluster(const CoarseParticles& coarse,

@@ -17,18 +17,13 @@ namespace lamella::melp {
 /// A force and its moment over a length.
 using Rigid = std::array<double, 6>;
 
-/// How a region flies when forces along its normals push it: mass M^-1 / 3 with M = sum m n n^T, times their sum, over
-/// the mass. The unit tensor on a sphere. Films without fine particles fly as their normals say, all of a region alike:
-/// between bubbles of different shapes forces that cancel push a pair off.
-std::vector<Tensor> flight_maps(const CoarseParticles& coarse, const Geometry& geometry, std::size_t regions);
-
 /// Bubbles that touch, free of rims: films push and twist them by nothing as a whole. Forces that have lost their part
 /// along the film do, a little. [method sheet 16.4 c'] Half a bubble on a plate is free in some directions.
 class FreeCluster {
 public:
     /// @param members     coarse particles
     /// @param directions  in which it is free
-    /// @param flight      of each region, see flight_maps(); empty: forces are what counts
+    /// @param flight      of each region, see Flight::over_sphere(); empty: forces are what counts
     FreeCluster(const CoarseParticles& coarse,
                 const Geometry& geometry,
                 std::vector<std::size_t> members,

@@ -22,14 +22,15 @@ void for_each_particle(std::size_t count, Body&& body) {
 
 /// Sums of term(i) over the particles of each region, added in fixed blocks: the same bits on any number of threads.
 template <class Term>
-std::vector<double> sum_over_regions(std::span<const std::int32_t> region, std::size_t regions, Term&& term) {
+auto sum_over_regions(std::span<const std::int32_t> region, std::size_t regions, Term&& term) {
+    using Value = decltype(term(std::size_t{}));
     const std::size_t blocks = (region.size() + kParallelBlock - 1) / kParallelBlock;
-    std::vector<double> parts(blocks * regions, 0.0);
+    std::vector<Value> parts(blocks * regions);
     parallel_blocks(region.size(), kParallelBlock, [&](std::size_t begin, std::size_t end) {
-        double* part = parts.data() + begin / kParallelBlock * regions;
+        Value* part = parts.data() + begin / kParallelBlock * regions;
         for (std::size_t i = begin; i < end; ++i) part[static_cast<std::size_t>(region[i])] += term(i);
     });
-    std::vector<double> sum(regions, 0.0);
+    std::vector<Value> sum(regions);
     for (std::size_t k = 0; k < parts.size(); ++k) sum[k % regions] += parts[k];
     return sum;
 }

@@ -1,6 +1,7 @@
 // Momentum of the films, and what is given back of it where coarse particles lose it.
 
 #include "lamella/linalg/small_cholesky.h"
+#include "lamella/solvers/melp/flight.h"
 #include "lamella/solvers/melp/free_clusters.h"
 #include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/melp_solver.h"
@@ -89,7 +90,7 @@ void MelpSolver::give_back_to_even_films(const std::vector<Vec3>& drift) {
 std::vector<Vec3> MelpSolver::region_drifts_now() const {
     std::vector<double> along_normal(coarse_.size());
     for (std::size_t i = 0; i < coarse_.size(); ++i) along_normal[i] = dot(coarse_.velocity[i], geometry_.normal[i]);
-    return region_drifts(geometry_, coarse_, geometry_.area, along_normal, gas_.size());
+    return Flight(geometry_, coarse_, geometry_.area, gas_.size()).of(along_normal);
 }
 
 /// Adds to the clusters' films the part along the normals of a uniform velocity.

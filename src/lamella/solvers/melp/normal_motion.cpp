@@ -1,6 +1,6 @@
 #include "lamella/solvers/melp/normal_motion.h"
 
-#include "lamella/solvers/melp/films.h"
+#include "lamella/solvers/melp/flight.h"
 #include "lamella/solvers/melp/free_clusters.h"
 #include "lamella/solvers/melp/loops.h"
 
@@ -237,7 +237,8 @@ private:
 NormalStep move_along_normals(const NormalProblem& p) {
     const std::size_t count = p.coarse.size();
     const Pairs pairs = pair_strengths(p);
-    const std::vector<Tensor> maps = p.even ? flight_maps(p.coarse, p.geometry, p.gas.size()) : std::vector<Tensor>{};
+    const Flight flight(p.geometry, p.coarse, p.mass, p.gas.size());
+    const std::vector<Tensor> maps = p.even ? flight.over_sphere() : std::vector<Tensor>{};
     const std::vector<FreeCluster> free = free_clusters(p.coarse, p.geometry, p.gas, p.rims, maps);
     const std::vector<double> gas_area = gas_areas(p.coarse, p.geometry, p.gas, p.rims);
     std::vector<double> force = forces(p, pairs, gas_area);
@@ -250,24 +251,30 @@ NormalStep move_along_normals(const NormalProblem& p) {
     std::vector<double> gas(p.gas.size());  // dt^2 p / V
     for (std::size_t r = 0; r < gas.size(); ++r)
         gas[r] = p.gas[r].closed ? p.dt * p.dt * p.gas[r].amount / (p.gas[r].volume * p.gas[r].volume) : 0.0;
-    std::vector<double> inertia(count), given(count), right(count), scale(count);
-    const std::vector<Vec3> flight = p.shape_damping > 0.0
-                                         ? region_drifts(p.geometry, p.coarse, p.mass, p.velocity, p.gas.size())
-                                         : std::vector<Vec3>(p.gas.size());
+    // Shapes lose what their films move beside the flight of their regions.
+    const double shape = p.dt * p.shape_damping;
+    const auto flown = [&](const std::vector<double>& v) { return shape > 0.0 ? flight.of(v) : std::vector<Vec3>{}; };
+    const auto kept = [&](const std::vector<Vec3>& flown_by, std::size_t i) {
+        return shape > 0.0 ? shape * p.mass[i] * dot(flown_by[region_of(p.coarse, i)], p.geometry.normal[i]) : 0.0;
+    };
+    std::vector<double> rigid(count), inertia(count), given(count), right(count), scale(count);
     for_each_particle(count, [&](std::size_t i) {
         const Spring walls = spring_of_walls(p, i);
-        const Vec3 outer = p.external[i] + (p.shape_damping * p.mass[i]) * flight[region_of(p.coarse, i)];
-        inertia[i] = p.mass[i] * (1.0 + p.dt * (p.damping + p.shape_damping)) + p.dt * p.dt * walls.stiffness;
-        given[i] = p.mass[i] * p.velocity[i] + p.dt * (force[i] + dot(outer, p.geometry.normal[i]) + walls.force);
+        rigid[i] = p.mass[i] * (1.0 + p.dt * p.damping) + p.dt * p.dt * walls.stiffness;
+        inertia[i] = rigid[i] + shape * p.mass[i];
+        given[i] =
+            p.mass[i] * p.velocity[i] + p.dt * (force[i] + dot(p.external[i], p.geometry.normal[i]) + walls.force);
         right[i] = given[i] + mixed * stiffness.apply(p.velocity, i) + p.theta * p.dt * p.dt * stiffness.of_rims(i);
         scale[i] = 1.0 / (inertia[i] - implicit * stiffness.diagonal(i));
     });
     const auto apply = [&](const std::vector<double>& v, std::vector<double>& y) {
         y.resize(count);
         const std::vector<double> grown = growth(p, gas_area, v);
+        const std::vector<Vec3> flight_of_v = flown(v);
         for_each_particle(count, [&](std::size_t i) {
             const std::size_t r = region_of(p.coarse, i);
-            y[i] = inertia[i] * v[i] - implicit * stiffness.apply(v, i) + gas[r] * grown[r] * gas_area[i];
+            y[i] = inertia[i] * v[i] - implicit * stiffness.apply(v, i) + gas[r] * grown[r] * gas_area[i] -
+                   kept(flight_of_v, i);
         });
     };
     NormalStep step;
@@ -278,13 +285,16 @@ NormalStep move_along_normals(const NormalProblem& p) {
 
     // What the implicit terms have added pushes nothing as a whole either: a rigid motion mends that, which strains no
     // film.
+    const std::vector<Vec3> flight_of_step = flown(step.velocity);
     std::vector<double> added(count);
-    for (std::size_t i = 0; i < count; ++i) added[i] = inertia[i] * step.velocity[i] - given[i];
+    for_each_particle(
+        count, [&](std::size_t i) { added[i] = inertia[i] * step.velocity[i] - kept(flight_of_step, i) - given[i]; });
+    const std::vector<double> before = added;
     const std::vector<Vec3> nothing(count);
-    for (const FreeCluster& cluster : free) cluster.remove_resultant(added, nothing, p.mass);
+    for (const FreeCluster& cluster : free) cluster.remove_resultant(added, nothing, rigid);
     step.mean.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
-        step.velocity[i] = (given[i] + added[i]) / inertia[i];
+        step.velocity[i] += (added[i] - before[i]) / rigid[i];
         step.mean[i] = p.theta * step.velocity[i] + (1.0 - p.theta) * p.velocity[i];
     }
     step.swept = growth(p, gas_area, step.velocity);

@@ -43,9 +43,11 @@ struct NormalStep {
 
 /// Tension, cohesion and gas move the films of all regions at once, implicitly [method sheet 16.2, eq. 10]:
 ///
-///   [M (1 + dt damping) - theta^2 dt^2 J_film - dt^2 J_gas] v1 = M v0 + dt F0 + theta (1 - theta) dt^2 J_film v0
+///   [M (1 + dt damping + dt shape_damping (1 - F)) - theta^2 dt^2 J_film - dt^2 J_gas] v1 = M v0 + dt F0 + theta (1 -
+///   theta) dt^2 J_film v0
 ///
-/// with the pair forces and pressures F0, their derivatives J_film along the normals,
+/// with the flight F of each region as a whole, the pair forces and pressures F0, their derivatives J_film along the
+/// normals,
 ///
 ///   (J_film v)_i = sum_j c_ij (v_j - n_i . n_j v_i),   c_ij = (tau_i + tau_j) / 2 a_i a_j omega_ij,
 ///

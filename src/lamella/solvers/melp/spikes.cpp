@@ -1,5 +1,6 @@
 // Coarse particles that leave their film at folds.
 
+#include "lamella/solvers/melp/flight.h"
 #include "lamella/solvers/melp/free_clusters.h"
 #include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/melp_solver.h"
@@ -32,8 +33,9 @@ void MelpSolver::pull_back_spikes(double dt) {
     }
     if (!any) return;
     const std::vector<Vec3> nothing(coarse_.size());
-    const std::vector<Tensor> maps =
-        fine_.size() == 0 ? flight_maps(coarse_, geometry_, gas_.size()) : std::vector<Tensor>{};
+    const std::vector<Tensor> maps = fine_.size() == 0
+                                         ? Flight(geometry_, coarse_, geometry_.area, gas_.size()).over_sphere()
+                                         : std::vector<Tensor>{};
     for (const FreeCluster& cluster : free_clusters(coarse_, geometry_, gas_, rims_now_, maps))
         cluster.remove_resultant(impulse, nothing, films_.liquid_volume);
     for_each_particle(coarse_.size(), [&](std::size_t i) {
