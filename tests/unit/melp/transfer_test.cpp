@@ -1,5 +1,7 @@
 #include "lamella/solvers/melp/transfer.h"
 
+#include "lamella/solvers/melp/fine_order.h"
+
 #include <gtest/gtest.h>
 
 #include "bubbles.h"

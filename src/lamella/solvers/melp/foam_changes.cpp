@@ -1,6 +1,7 @@
 // Bubbles of a foam that burst, join in one, and enter.
 
 #include "lamella/core/random.h"
+#include "lamella/solvers/melp/fine_order.h"
 #include "lamella/solvers/melp/foam.h"
 #include "lamella/solvers/melp/melp_solver.h"
 #include "lamella/solvers/melp/start.h"

@@ -15,20 +15,15 @@
 namespace lamella::melp {
 namespace {
 
-using mesh::FoamMesh;
-using mesh::RegionId;
-using mesh::RegionKind;
-using mesh::VertexId;
-
 /// Where bubbles meet, films fold within a few spacings: folds have to fit onto the bubble.
 void refuse_coarse_contacts(const film::Problem& films) {
     const auto& regions = films.mesh.regions;
     const auto bubbles = films.bubble_count();
     if (bubbles < 2) return;
     constexpr double kFinest = 6.0;
-    for (const RegionId r : regions.ids()) {
+    for (const mesh::RegionId r : regions.ids()) {
         const double radius = std::cbrt(0.75 * regions[r].target_volume / std::numbers::pi);
-        if (regions[r].kind == RegionKind::kClosed && films.edge_length > 1.001 * radius / kFinest)
+        if (regions[r].kind == mesh::RegionKind::kClosed && films.edge_length > 1.001 * radius / kFinest)
             throw InputError(
                 fmt::format("resolution.edge_length = {:.4g} m is too coarse for bubble {} among others: at most a "
                             "sixth of its radius of {:.4g} m will do",
@@ -80,18 +75,19 @@ void refuse_unknown_heat(const film::Material& material, const Options& options)
 }  // namespace
 
 void refuse_unknown_films(const film::Problem& films, const Options& options) {
-    const FoamMesh& mesh = films.mesh;
+    const mesh::FoamMesh& mesh = films.mesh;
     if (mesh.periodic()) throw InputError("melp: films in a periodic box are for solver equilibrium");
-    const auto kind = [&](RegionId r) { return mesh.regions[r].kind; };
-    IdVector<VertexId, std::uint8_t> of_bubble(mesh.position.size());
+    const auto kind = [&](mesh::RegionId r) { return mesh.regions[r].kind; };
+    IdVector<mesh::VertexId, std::uint8_t> of_bubble(mesh.position.size());
     for (const mesh::Face& face : mesh.faces) {
-        const bool back = kind(face.back) == RegionKind::kClosed, front = kind(face.front) == RegionKind::kClosed;
+        const bool back = kind(face.back) == mesh::RegionKind::kClosed,
+                   front = kind(face.front) == mesh::RegionKind::kClosed;
         if (back || front)
-            for (const VertexId v : face.vertices) of_bubble[v] = 1;
+            for (const mesh::VertexId v : face.vertices) of_bubble[v] = 1;
         if ((back && !front && face.front != mesh::kOutside) || (front && !back && face.back != mesh::kOutside))
             throw InputError("melp: bubbles in films on wires are not built yet; use solver vortex_sheet");
     }
-    for (const VertexId v : mesh.position.ids())
+    for (const mesh::VertexId v : mesh.position.ids())
         if (mesh.on_wire[v] != 0 && of_bubble[v] != 0)
             throw InputError("melp: wires that hold closed bubbles are not built yet; use solver vortex_sheet");
     for (const film::Wire& wire : films.wires)

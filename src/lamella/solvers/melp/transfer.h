@@ -43,7 +43,7 @@ struct Growth {
 /// have none. [method sheet 5, 16.5] Pictures of coarse particles beyond rims count among them: they give the velocity
 /// of the film there, so that liquid does not flow through rims, and hand what they receive to their particles.
 ///
-/// Fine particles that lie next to each other in memory lie next to each other in space (sort_fine_particles). Sixteen
+/// Fine particles that lie next to each other in memory lie next to each other in space (fine_order.h). Sixteen
 /// of them make a block, which keeps one dense matrix of weights with all coarse particles that any of them sees: all
 /// loops run over the sixteen with one instruction for eight. Sixteen blocks are a chunk, the work of one task.
 class Transfer {
@@ -121,9 +121,5 @@ private:
     std::vector<std::uint32_t> places_start_;
     std::vector<std::array<std::uint32_t, 2>> places_;
 };
-
-/// Puts fine particles that are near in space near in memory: along a Z-shaped curve through cells of half a spacing,
-/// one region after the other.
-void sort_fine_particles(FineParticles& fine, double spacing);
 
 }  // namespace lamella::melp
