@@ -152,8 +152,11 @@ int supervise(const RunOptions& options,
               const Processes& processes,
               Work&& work) {
     catch_stop_signals();
+    const auto last_words = [&](std::string_view text) {
+        print_error(fmt::format("{} (process {})", text, processes->rank()));
+    };
     if (processes->rank() > 0) {
-        work({.until = options.until, .device = options.device, .processes = processes});
+        work({.until = options.until, .device = options.device, .processes = processes, .last_words = last_words});
         return kDone;
     }
     ProgressDisplay display(progress_style(options.progress));
@@ -170,6 +173,7 @@ int supervise(const RunOptions& options,
         display.clear();
         fmt::print(stderr, "note: {}\n", message);
     };
+    settings.last_words = last_words;
     const auto begin = std::chrono::steady_clock::now();
     const run::RunResult result = work(settings);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -182,9 +186,9 @@ int supervise(const RunOptions& options,
 int run_scene_command(const RunOptions& options) {
     return with_processes(options, [&](const Processes& processes) {
         const sim::SolverRegistry registry = scene::all_solvers();
+        take_device(options.device, *processes);
         std::filesystem::path file;
         const scene::Scene scene = dist::together(*processes, [&] {
-            check_device(options.device);
             file = scene::resolve_scene_path(options.scene);
             return scene::load_scene(file, options.overrides, registry);
         });
@@ -197,7 +201,7 @@ int run_scene_command(const RunOptions& options) {
 
 int resume_command(const RunOptions& options) {
     return with_processes(options, [&](const Processes& processes) {
-        dist::together(*processes, [&] { check_device(options.device); });
+        take_device(options.device, *processes);
         const sim::SolverRegistry registry = scene::all_solvers();
         return supervise(options, options.folder, registry, processes, [&](const run::RunSettings& settings) {
             return run::resume_run(options.folder, registry, settings);

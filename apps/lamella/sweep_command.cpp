@@ -179,8 +179,6 @@ int run_command(const SweepOptions& options) {
     const std::vector<std::size_t> tasks = chosen_tasks(folder, options);
     const int cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
     const sweep::TaskOptions& task = folder.options();
-    if (task.ranks > 1 && options.device != "cpu")
-        throw InputError("runs of several processes (task.ranks) compute on CPUs only; use --device cpu");
     const int jobs = options.jobs > 0 ? options.jobs : std::max(cores / (task.threads * task.ranks), 1);
     const int code = jobs == 1 || !options.task.empty() ? work_here(folder, tasks, options)
                                                         : work_in_pool(folder, tasks, options, jobs);

@@ -145,6 +145,17 @@ class Clusters(ProgramTest):
         self.assert_refused_once(mpirun(2, "resume", self.folder), "not a run folder")
         self.assertFalse(out.exists())
 
+    def test_take_a_gpu_each_or_say_that_there_are_too_few(self):
+        out = self.folder / "out"
+        result = mpirun(2, "run", self.scene, "--device", "cuda", "--out", out)
+        if result.returncode != 0:
+            self.assert_refused_once(result, "--device cpu")
+            self.assertFalse(out.exists())
+            return
+        whole = self.folder / "whole"
+        self.assert_exit(lamella("run", self.scene, "--out", whole), 0)
+        self.assert_same_results(out, whole)
+
 
 SWEEP = """
 scene = "foam.toml"

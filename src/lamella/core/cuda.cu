@@ -6,13 +6,14 @@
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 
+#include <cstring>
 #include <string>
 
 namespace lamella {
 
 void check_cuda(cudaError_t status, const char* what) {
     if (status == cudaSuccess) return;
-    throw IoError(std::string("CUDA, ") + what + ": " + cudaGetErrorString(status));
+    throw CudaError(std::string("CUDA, ") + what + ": " + cudaGetErrorString(status));
 }
 
 std::string cuda_fault() {
@@ -30,6 +31,20 @@ std::string cuda_device_name() {
     if (cudaGetDevice(&device) != cudaSuccess || cudaGetDeviceProperties(&properties, device) != cudaSuccess) return {};
     return std::string(properties.name) + " (compute " + std::to_string(properties.major) + "." +
            std::to_string(properties.minor) + ", " + std::to_string(properties.totalGlobalMem >> 30) + " GiB)";
+}
+
+std::int64_t use_cuda_device(int n) {
+    int devices = 0;
+    check_cuda(cudaGetDeviceCount(&devices), "counting devices");
+    if (devices == 0) return 0;
+    const int device = n % devices;
+    check_cuda(cudaSetDevice(device), "taking a device");
+    cudaDeviceProp properties{};
+    check_cuda(cudaGetDeviceProperties(&properties, device), "looking at a device");
+    std::int64_t halves[2] = {};
+    static_assert(sizeof halves == sizeof properties.uuid);
+    std::memcpy(halves, &properties.uuid, sizeof halves);
+    return halves[0] ^ halves[1];
 }
 
 double cuda_copy_rate(std::size_t bytes) {

@@ -7,7 +7,7 @@
 
 namespace lamella {
 
-/// Throws what a call of the CUDA runtime reports. @throws IoError
+/// Throws what a call of the CUDA runtime reports. @throws CudaError
 void check_cuda(cudaError_t status, const char* what);
 
 namespace cuda {
@@ -97,25 +97,33 @@ __global__ void __launch_bounds__(kMachineThreads)
 /// Runs the loops of a program as kernels, on a stream of its own: several programs share a GPU.
 class CudaMachine {
 public:
-    CudaMachine() { check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "a stream"); }
+    CudaMachine() {
+        check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "a stream");
+        check_cuda(cudaEventCreateWithFlags(&mark_, cudaEventDisableTiming), "an event");
+    }
     ~CudaMachine() {
         forget_recording();
+        cudaEventDestroy(mark_);
         cudaStreamDestroy(stream_);
     }
     CudaMachine(const CudaMachine&) = delete;
     CudaMachine& operator=(const CudaMachine&) = delete;
 
-    template <class T>
+    template <MachineMemory kMemory, class T>
     static T* allocate(std::size_t count) {
         void* memory = nullptr;
+        if constexpr (kMemory == MachineMemory::kHost) {
+            check_cuda(cudaMallocHost(&memory, count * sizeof(T)), "memory of the host");
+            return static_cast<T*>(memory);
+        }
         check_cuda(cudaMalloc(&memory, count * sizeof(T)), "memory");
         check_cuda(cudaMemset(memory, 0, count * sizeof(T)), "clearing memory");
         check_cuda(cudaDeviceSynchronize(), "clearing memory");
         return static_cast<T*>(memory);
     }
-    template <class T>
+    template <MachineMemory kMemory, class T>
     static void release(T* memory) {
-        cudaFree(memory);
+        kMemory == MachineMemory::kHost ? cudaFreeHost(memory) : cudaFree(memory);
     }
     template <class T>
     void to_device(T* to, const T* from, std::size_t count) {
@@ -125,6 +133,21 @@ public:
     void to_host(T* to, const T* from, std::size_t count) {
         copy(to, from, count * sizeof(T), cudaMemcpyDeviceToHost);
     }
+    template <class T>
+    void begin_to_device(T* to, const T* from, std::size_t count) {
+        begin_copy(to, from, count * sizeof(T), cudaMemcpyHostToDevice);
+    }
+    template <class T>
+    void begin_to_host(T* to, const T* from, std::size_t count) {
+        begin_copy(to, from, count * sizeof(T), cudaMemcpyDeviceToHost);
+    }
+    template <class T>
+    void copy_on_device(T* to, const T* from, std::size_t count) {
+        begin_copy(to, from, count * sizeof(T), cudaMemcpyDeviceToDevice);
+    }
+    void wait() { check_cuda(cudaStreamSynchronize(stream_), "the device"); }
+    void mark() { check_cuda(cudaEventRecord(mark_, stream_), "an event"); }
+    void wait_for_mark() { check_cuda(cudaEventSynchronize(mark_), "the device"); }
 
     template <class Body>
     void for_each(std::size_t count, const Body& body) {
@@ -183,14 +206,17 @@ public:
 private:
     static unsigned grid(std::size_t blocks) { return static_cast<unsigned>(blocks); }
 
+    void begin_copy(void* to, const void* from, std::size_t bytes, cudaMemcpyKind kind) {
+        if (bytes > 0) check_cuda(cudaMemcpyAsync(to, from, bytes, kind, stream_), "a copy");
+    }
     /// The host may use or change what it gave as soon as this returns.
     void copy(void* to, const void* from, std::size_t bytes, cudaMemcpyKind kind) {
-        if (bytes == 0) return;
-        check_cuda(cudaMemcpyAsync(to, from, bytes, kind, stream_), "a copy");
-        check_cuda(cudaStreamSynchronize(stream_), "the device");
+        begin_copy(to, from, bytes, kind);
+        if (bytes > 0) wait();
     }
 
     cudaStream_t stream_ = nullptr;
+    cudaEvent_t mark_ = nullptr;
     cudaGraphExec_t recording_[2] = {};
     cuda::Scratch scratch_;
 };

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -39,6 +41,12 @@ inline std::size_t machine_blocks(std::size_t count) {
     return std::clamp<std::size_t>((count + kMachineThreads - 1) / kMachineThreads, 1, kMachineBlocks);
 }
 
+/// Where memory of a machine is.
+enum class MachineMemory {
+    kDevice,
+    kHost,  ///< pinned: a GPU copies to and from it by itself
+};
+
 /// The CPU twin of a GPU.
 class HostMachine {
 public:
@@ -46,11 +54,11 @@ public:
     enum class Order { kForward, kBackward, kShuffled };
     explicit HostMachine(Order order = Order::kForward) : order_(order) {}
 
-    template <class T>
+    template <MachineMemory, class T>
     static T* allocate(std::size_t count) {
         return new T[count]();
     }
-    template <class T>
+    template <MachineMemory, class T>
     static void release(T* memory) {
         delete[] memory;
     }
@@ -62,6 +70,26 @@ public:
     void to_host(T* to, const T* from, std::size_t count) {
         std::copy_n(from, count, to);
     }
+
+    /// Copies that take their turn among the loops; only the host's memory may be pinned, and it has to stay as it is.
+    /// What goes to the host is there after wait(), or after wait_for_mark() where it was begun before mark().
+    template <class T>
+    void begin_to_device(T* to, const T* from, std::size_t count) {
+        to_device(to, from, count);
+    }
+    template <class T>
+    void begin_to_host(T* to, const T* from, std::size_t count) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        const auto* bytes = reinterpret_cast<const std::byte*>(from);
+        under_way_.push_back({to, {bytes, bytes + count * sizeof(T)}});
+    }
+    template <class T>
+    void copy_on_device(T* to, const T* from, std::size_t count) {
+        std::copy_n(from, count, to);
+    }
+    void wait() { deliver(under_way_.size()); }
+    void mark() { marked_ = under_way_.size(); }
+    void wait_for_mark() { deliver(marked_); }
 
     /// body(i) for i in [0, count).
     template <class Body>
@@ -131,6 +159,19 @@ public:
     }
 
 private:
+    /// What the host looks at before it has waited is not there.
+    struct UnderWay {
+        void* to;
+        std::vector<std::byte> bytes;
+    };
+    void deliver(std::size_t copies) {
+        for (std::size_t n = 0; n < copies; ++n)
+            if (!under_way_[n].bytes.empty())
+                std::memcpy(under_way_[n].to, under_way_[n].bytes.data(), under_way_[n].bytes.size());
+        under_way_.erase(under_way_.begin(), under_way_.begin() + static_cast<std::ptrdiff_t>(copies));
+        marked_ = 0;
+    }
+
     std::size_t place(std::size_t n, std::size_t count) const {
         switch (order_) {
             case Order::kForward:
@@ -146,10 +187,12 @@ private:
     }
 
     Order order_;
+    std::vector<UnderWay> under_way_;
+    std::size_t marked_ = 0;
 };
 
 /// Memory of a machine.
-template <class Machine, class T>
+template <class Machine, class T, MachineMemory kMemory = MachineMemory::kDevice>
 class MachineBuffer {
 public:
     MachineBuffer() = default;
@@ -161,8 +204,17 @@ public:
     void reserve(std::size_t count) {
         if (count <= size_) return;
         clear();
-        data_ = Machine::template allocate<T>(count);
+        data_ = Machine::template allocate<kMemory, T>(count);
         size_ = count;
+    }
+    /// The same, but the first `kept` entries stay.
+    void grow(Machine& machine, std::size_t count, std::size_t kept) {
+        if (count <= size_) return;
+        MachineBuffer larger;
+        larger.reserve(count);
+        machine.copy_on_device(larger.data_, data_, kept);
+        machine.wait();
+        swap(larger);
     }
     T* data() const { return data_; }
     std::size_t size() const { return size_; }
@@ -173,7 +225,7 @@ public:
 
 private:
     void clear() {
-        if (data_ != nullptr) Machine::template release<T>(data_);
+        if (data_ != nullptr) Machine::template release<kMemory>(data_);
         data_ = nullptr;
         size_ = 0;
     }

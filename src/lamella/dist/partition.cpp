@@ -3,6 +3,7 @@
 #include "lamella/core/parallel.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace lamella::dist {
@@ -64,9 +65,6 @@ Partition<D>::Partition(Communicator& processes,
         open.clear();
         for (std::size_t n = first_new; n < nodes_.size(); ++n) open.push_back(static_cast<std::int32_t>(n));
     }
-    leaf_.resize(weights.size());
-    for (std::size_t n = 0; n < nodes_.size(); ++n)
-        if (nodes_[n].axis < 0) leaf_[static_cast<std::size_t>(nodes_[n].first)] = static_cast<std::int32_t>(n);
 }
 
 /// Cuts every node in `open` once, into halves of its parts, and moves the points into the halves.
@@ -159,6 +157,25 @@ void Partition<D>::cut_level(Communicator& processes,
         const auto axis = static_cast<std::size_t>(node.axis);
         node_of_point[i] = node.below + (coordinate(axis, i) < node.cut ? 0 : 1);
     });
+}
+
+template <int D>
+Part<D> Partition<D>::part(int n) const {
+    Part<D> part;
+    part.box = box_;
+    for (std::size_t k = 0; k < D; ++k) {
+        part.from[k] = -std::numeric_limits<double>::infinity();
+        part.to[k] = std::numeric_limits<double>::infinity();
+    }
+    const Node* node = &nodes_[0];
+    while (node->axis >= 0) {
+        const auto axis = static_cast<std::size_t>(node->axis);
+        const Node* below = &nodes_[static_cast<std::size_t>(node->below)];
+        const bool in_below = n < below->first + below->parts;
+        (in_below ? part.to : part.from)[axis] = node->cut;
+        node = in_below ? below : below + 1;
+    }
+    return part;
 }
 
 template class Partition<2>;

@@ -2,6 +2,7 @@
 
 #include "lamella/core/vec.h"
 #include "lamella/dist/communicator.h"
+#include "lamella/dist/part.h"
 #include "lamella/spatial/periodic_box.h"
 
 #include <array>
@@ -52,20 +53,8 @@ public:
         visit_near(0, center, limit * limit, visit);
     }
 
-    /// Where for_each_near need not be asked: whether all places within `reach` of `center` are the part's own.
-    bool holds_all_near(int part, Vec<D> center, double reach) const {
-        const Node& node = nodes_[static_cast<std::size_t>(leaf_[static_cast<std::size_t>(part)])];
-        center = in_box(center);
-        const double limit = reach * (1.0 + 1e-9);
-        for (std::size_t k = 0; k < D; ++k) {
-            const bool whole = node.low[k] <= 0.0 && node.high[k] >= box_.lengths[k];
-            const bool ends_low = !whole && (box_.periodic[k] || node.low[k] > 0.0);
-            const bool ends_high = !whole && (box_.periodic[k] || node.high[k] < box_.lengths[k]);
-            if (ends_low && center[k] - node.low[k] <= limit) return false;
-            if (ends_high && node.high[k] - center[k] <= limit) return false;
-        }
-        return true;
-    }
+    /// The place of one part: what can be asked of it alone needs no look at the others.
+    Part<D> part(int n) const;
 
 private:
     struct Node {
@@ -78,11 +67,7 @@ private:
 
     Partition(const spatial::PeriodicBox<D>& box, int parts);
 
-    Vec<D> in_box(Vec<D> x) const {
-        for (std::size_t k = 0; k < D; ++k)
-            if (box_.periodic[k]) x[k] -= box_.lengths[k] * std::floor(x[k] / box_.lengths[k]);
-        return x;
-    }
+    Vec<D> in_box(const Vec<D>& x) const { return first_image(box_, x); }
 
     /// Distance along an axis from x to the node, around the box where it is periodic.
     double distance(const Node& node, std::size_t k, double x) const {
@@ -124,7 +109,6 @@ private:
     spatial::PeriodicBox<D> box_;
     int parts_;
     std::vector<Node> nodes_;
-    std::vector<std::int32_t> leaf_;  ///< node of each part
 };
 
 }  // namespace lamella::dist

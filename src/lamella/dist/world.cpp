@@ -30,10 +30,18 @@ Launch launch() {
     found.processes = std::max(1, number_in({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"}));
     found.on_this_machine =
         std::max(1, number_in({"OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS", "SLURM_STEP_TASKS_PER_NODE"}));
+    // Ranks as such will do where there is one machine; on more of them they may meet at one of its devices.
+    for (const char* name : {"OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID", "SLURM_LOCALID", "PMIX_RANK", "PMI_RANK"})
+        if (const char* text = std::getenv(name)) {
+            found.rank_on_this_machine = std::max(0, std::atoi(text));
+            break;
+        }
     return found;
 }
 
 }  // namespace detail
+
+int rank_on_machine() { return detail::launch().rank_on_this_machine; }
 
 int threads_per_process() {
     cpu_set_t allowed;

@@ -11,6 +11,9 @@ namespace lamella::dist {
 /// @throws InputError  there are several, and this build has no MPI
 std::shared_ptr<Communicator> join_world();
 
+/// The number of this process among those of its machine, from 0, as the launcher gave it.
+int rank_on_machine();
+
 /// Worker threads for this process, so that the processes of one machine share its cores.
 int threads_per_process();
 

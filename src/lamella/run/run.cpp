@@ -57,10 +57,10 @@ RunResult run_scene(const scene::Scene& scene,
         return scene::create_solver(scene, registry, device_of(settings), processes);
     };
     if (follows(settings)) {
-        follow(settings.processes, make);
+        follow(settings.processes, settings.last_words, make);
         return {};
     }
-    Team team(settings.processes);
+    Team team(settings.processes, settings.last_words);
     // What can be wrong with the input is found before anything is written.
     auto solver = team.create(make);
     const std::string resolved = scene::resolved_toml(scene, registry, scene::FileNames::kCopies);
@@ -87,13 +87,13 @@ RunResult resume_run(const std::filesystem::path& path,
                      const RunSettings& settings) {
     if (follows(settings)) {
         std::optional<scene::Scene> scene;
-        follow(settings.processes, [&](const std::shared_ptr<dist::Communicator>& processes) {
+        follow(settings.processes, settings.last_words, [&](const std::shared_ptr<dist::Communicator>& processes) {
             if (!scene) scene = scene::load_scene(path / "scene.toml", {}, registry);
             return scene::create_solver(*scene, registry, device_of(settings), processes);
         });
         return {};
     }
-    Team team(settings.processes);
+    Team team(settings.processes, settings.last_words);
     const RunFolder folder = RunFolder::open(path);
     const scene::Scene scene = scene::load_scene(folder.scene(), {}, registry);
     const Schedule schedule(scene.time, settings.until);

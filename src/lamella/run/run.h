@@ -39,6 +39,8 @@ struct RunSettings {
     std::function<int()> stop_signal = [] { return 0; };
     std::function<void(const RunProgress&)> on_progress = [](const RunProgress&) {};  ///< after every step
     LogSink log = [](LogLevel, std::string_view) {};                                  ///< gets what goes to log.txt
+    /// Hears why this process ends all others: it met an error that they do not know of, and does not return.
+    std::function<void(std::string_view)> last_words = [](std::string_view) {};
     std::function<double()> wall_clock = {};  ///< seconds, for checkpoint intervals; empty: the system's steady clock
 };
 

@@ -2,6 +2,7 @@
 
 #include "lamella/core/parallel.h"
 #include "lamella/spatial/cell_grid.h"
+#include "lamella/spatial/search_frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,8 +102,7 @@ struct BlockLists {
     std::vector<std::array<std::int8_t, D>> image;  ///< likewise, where there are images
 };
 
-/// One axis of the part of a box that holds the balls of one process. Where it is shorter than the box, it has ends
-/// like a wall, and what lies beyond them is too far to matter.
+/// One axis of a SearchFrame.
 struct Window {
     double origin = 0.0;
     double length = 0.0;
@@ -240,31 +240,20 @@ void fill(const std::vector<BlockLists<D>>& blocks,
     });
 }
 
-/// The balls in the frame that they are searched in: all of the box, or a window around the balls of this process.
+/// Narrows the frame to where the balls are, and moves them into it.
 template <int D>
-struct Frame {
-    PeriodicBox<D> box;
-    std::array<Column, D> position;
-};
-
-template <int D>
-Frame<D> frame_of(const PeriodicBox<D>& box, std::array<const double*, D> position, std::size_t count, double reach) {
-    Frame<D> frame{box, {}};
+std::array<Column, D> narrow(SearchFrame<D>& frame,
+                             std::array<const double*, D> position,
+                             std::size_t count,
+                             double reach) {
+    std::array<Column, D> placed;
     for (std::size_t k = 0; k < D; ++k) {
-        const double length = box.lengths[k];
-        const Window window = window_of(position[k], count, length, box.periodic[k], reach);
-        frame.position[k].assign(position[k], position[k] + count);
-        if (window.whole) continue;
-        frame.box.lengths[k] = window.length;
-        frame.box.periodic[k] = false;
-        const double origin = window.origin;
-        const bool around = box.periodic[k];
-        parallel_for(count, [&](std::size_t i) {
-            const double x = frame.position[k][i] - origin;
-            frame.position[k][i] = around ? x - length * std::floor(x / length) : x;
-        });
+        const Window window = window_of(position[k], count, frame.box.lengths[k], frame.box.periodic[k], reach);
+        if (!window.whole) frame.narrow(k, window.origin, window.length);
+        placed[k].resize(count);
+        parallel_for(count, [&](std::size_t i) { placed[k][i] = frame.place(k, position[k][i]); });
     }
-    return frame;
+    return placed;
 }
 
 }  // namespace
@@ -285,10 +274,11 @@ NeighborSearch<D> find_neighbors(const PeriodicBox<D>& box,
     for (std::size_t k = 0; k < D; ++k)
         images = images || (box.periodic[k] && box.lengths[k] <= 2.0 * (2.0 * largest + skin));
 
-    Frame<D> frame{box, {}};
+    SearchFrame<D> frame(box);
+    std::array<Column, D> placed;
     if (copies.count > 0 && !images) {
-        frame = frame_of<D>(box, position, count, 2.0 * largest + skin);
-        for (std::size_t k = 0; k < D; ++k) position[k] = frame.position[k].data();
+        placed = narrow<D>(frame, position, count, 2.0 * largest + skin);
+        for (std::size_t k = 0; k < D; ++k) position[k] = placed[k].data();
     }
     const CellGrid<D> grid(frame.box, position, count, 2.5 * mean);
     const auto cell_order = grid.order();
@@ -299,7 +289,7 @@ NeighborSearch<D> find_neighbors(const PeriodicBox<D>& box,
         for (std::size_t k = 0; k < D; ++k) balls.position[k][i] = position[k][cell_order[i]];
         balls.radius[i] = radius[cell_order[i]];
     });
-    frame.position = {};
+    placed = {};
 
     std::vector<std::uint32_t> subjects;
     subjects.reserve(owned);

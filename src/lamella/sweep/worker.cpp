@@ -39,6 +39,7 @@ run::RunResult run_ranks(const SweepFolder& folder, std::size_t task, const Work
     if (run::is_run_folder(run)) arguments = {"resume", run};
     for (const char* more : {"--progress", "none", "--threads"}) arguments.emplace_back(more);
     arguments.push_back(std::to_string(folder.options().threads));
+    arguments.insert(arguments.end(), {"--device", settings.device});
     const std::filesystem::path messages = folder.messages(task);
     const int status = settings.launch(launcher_words(folder.options()), arguments, messages);
     run::RunResult result;

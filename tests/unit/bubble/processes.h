@@ -63,8 +63,10 @@ private:
 template <int D>
 std::unique_ptr<BubbleSolver<D>> make_share(const Options& options,
                                             const Processes& processes,
-                                            const std::vector<Ball>& balls = {}) {
+                                            const std::vector<Ball>& balls = {},
+                                            Device device = Device::kCpu) {
     sim::SolverInput input;
+    input.device = device;
     input.seed = 4;
     input.processes = processes;
     input.read_table = [&balls](const std::string&) {
@@ -103,14 +105,25 @@ void look(const BubbleSolver<D>& solver, dist::Communicator& processes, Outcome&
     for (const sim::Scalar& s : scalars) outcome.scalars[s.name] = s.value;
 }
 
+/// @param steps  for a device a multiple of those that it takes at once
+template <class S>
+void take_steps(S& solver, std::int64_t steps) {
+    const std::int64_t end = solver.step() + steps;
+    while (solver.step() < end && !solver.stop_reason()) solver.advance(1e9);
+}
+
 /// A foam after `steps` steps on several processes.
 template <int D>
-Outcome run_shared(const Options& options, int steps, int processes, const std::vector<Ball>& balls = {}) {
+Outcome run_shared(const Options& options,
+                   int steps,
+                   int processes,
+                   const std::vector<Ball>& balls = {},
+                   Device device = Device::kCpu) {
     Outcome outcome;
     as_processes(processes, [&](const Processes& all) {
-        auto solver = make_share<D>(options, all, balls);
+        auto solver = make_share<D>(options, all, balls, device);
         solver->start({});
-        for (int step = 0; step < steps && !solver->stop_reason(); ++step) solver->advance(1e9);
+        take_steps(*solver, steps);
         look(*solver, *all, outcome);
         auto events = solver->take_events();
         if (all->rank() == 0) outcome.events = std::move(events);
@@ -118,30 +131,36 @@ Outcome run_shared(const Options& options, int steps, int processes, const std::
     return outcome;
 }
 
+inline void expect_same(const Outcome& shared, const Outcome& alone) {
+    EXPECT_EQ(shared.state, alone.state);
+    EXPECT_EQ(shared.scalars, alone.scalars);
+    EXPECT_EQ(shared.frame, alone.frame);
+    EXPECT_EQ(shared.measures, alone.measures);
+    ASSERT_EQ(shared.events.size(), alone.events.size());
+    for (std::size_t k = 0; k < alone.events.size(); ++k) {
+        EXPECT_EQ(shared.events[k].detail, alone.events[k].detail);
+        EXPECT_EQ(shared.events[k].position, alone.events[k].position);
+    }
+    const auto& ids = std::get<std::vector<std::int64_t>>(shared.state.entries.at("foam/id"));
+    const auto& start = std::get<std::vector<std::int64_t>>(shared.state.entries.at("start_count"));
+    EXPECT_EQ(static_cast<std::int64_t>(ids.size() + shared.events.size()), start[0]) << "live and dead are all";
+}
+
+/// So many processes have the foam of one process on the CPU.
 template <int D>
 void expect_same_on(const std::vector<int>& numbers,
                     const Options& options,
                     int steps,
-                    const std::vector<Ball>& balls = {}) {
+                    const std::vector<Ball>& balls = {},
+                    Device device = Device::kCpu) {
     ThreadLimit one(1);
     const Outcome alone = run_shared<D>(options, steps, 1, balls);
     EXPECT_FALSE(alone.events.empty());
     EXPECT_EQ(static_cast<double>(alone.scalars.at("steps")), steps);
     EXPECT_LT(std::abs(alone.scalars.at("volume_error")), 1e-14);
     for (const int processes : numbers) {
-        const Outcome shared = run_shared<D>(options, steps, processes, balls);
-        EXPECT_EQ(shared.state, alone.state) << processes << " processes";
-        EXPECT_EQ(shared.scalars, alone.scalars);
-        EXPECT_EQ(shared.frame, alone.frame);
-        EXPECT_EQ(shared.measures, alone.measures);
-        ASSERT_EQ(shared.events.size(), alone.events.size());
-        for (std::size_t k = 0; k < alone.events.size(); ++k) {
-            EXPECT_EQ(shared.events[k].detail, alone.events[k].detail);
-            EXPECT_EQ(shared.events[k].position, alone.events[k].position);
-        }
-        const auto& ids = std::get<std::vector<std::int64_t>>(shared.state.entries.at("foam/id"));
-        const auto& start = std::get<std::vector<std::int64_t>>(shared.state.entries.at("start_count"));
-        EXPECT_EQ(static_cast<std::int64_t>(ids.size() + shared.events.size()), start[0]) << "live and dead are all";
+        SCOPED_TRACE(processes);
+        expect_same(run_shared<D>(options, steps, processes, balls, device), alone);
     }
 }
 

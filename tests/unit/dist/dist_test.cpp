@@ -4,14 +4,17 @@
 #include "lamella/core/random.h"
 #include "lamella/dist/agree.h"
 #include "lamella/dist/balance.h"
+#include "lamella/dist/devices.h"
 #include "lamella/dist/gather.h"
 #include "lamella/dist/halo.h"
 #include "lamella/dist/migration.h"
 #include "lamella/dist/sum.h"
+#include "lamella/dist/world.h"
 
 #include <gtest/gtest.h>
 
 #include "process_team.h"
+#include <cstdlib>
 #include <numeric>
 
 namespace lamella::dist {
@@ -281,6 +284,29 @@ TEST(Together, FailsForAllWhereItFailsForOne) {
             }
             EXPECT_EQ(together(*processes, [] { return 7; }), 7);
         });
+}
+
+TEST(Devices, AreRefusedWhereProcessesWouldShareOne) {
+    as_processes(3, [&](const std::shared_ptr<Communicator>& processes) {
+        EXPECT_NO_THROW(require_own_devices(*processes, 100 + processes->rank()));
+        std::string message;
+        try {
+            require_own_devices(*processes, processes->rank() / 2);
+        } catch (const InputError& error) {
+            message = error.what();
+        }
+        EXPECT_EQ(message.substr(0, message.find(':')), "3 processes were started and find 2 GPUs");
+    });
+}
+
+TEST(Devices, AreCountedByTheRanksOfOneMachine) {
+    for (const char* name : {"OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID", "SLURM_LOCALID"}) ::unsetenv(name);
+    ::setenv("PMIX_RANK", "7", 1);
+    EXPECT_EQ(rank_on_machine(), 7);
+    ::setenv("SLURM_LOCALID", "0", 1);
+    EXPECT_EQ(rank_on_machine(), 0);
+    ::unsetenv("SLURM_LOCALID");
+    ::unsetenv("PMIX_RANK");
 }
 
 }  // namespace

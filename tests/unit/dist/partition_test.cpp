@@ -104,10 +104,12 @@ void expect_all_near_parts_found(bool walls) {
             EXPECT_LT(found.size(), 12U);  // not simply all of them
         }
         const int own = partition.owner(cloud.point(i));
-        if (partition.holds_all_near(own, cloud.point(i), reach)) {
+        for (int p = 0; p < partition.parts(); ++p) EXPECT_EQ(partition.part(p).holds(cloud.point(i)), p == own);
+        const Part<D> part = partition.part(own);
+        if (part.holds_all_near(cloud.point(i), reach)) {
             EXPECT_EQ(found, std::set<int>{own});
         }
-        if (partition.holds_all_near(own, cloud.point(i), 0.01)) ++inside;
+        if (part.holds_all_near(cloud.point(i), 0.01)) ++inside;
     }
     EXPECT_GT(inside, cloud.size() / 14) << "of every seventh point, more than half";
 }

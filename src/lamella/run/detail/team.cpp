@@ -1,5 +1,6 @@
 #include "lamella/run/detail/team.h"
 
+#include "lamella/core/cuda.h"
 #include "lamella/core/error.h"
 #include "lamella/dist/agree.h"
 #include "lamella/dist/gather.h"
@@ -47,9 +48,15 @@ Order give(Communicator& processes, Order order) {
 /// Does what all processes do at once. The errors of core/error.h come from decisions that all make alike, so that all
 /// have them; any other error is this process's own, and the rest would wait for it for ever.
 template <class Work>
-auto in_step(Communicator& processes, Work&& work) {
+auto in_step(Communicator& processes, const LastWords& last_words, Work&& work) {
+    constexpr int kFailed = 3;
+    constexpr int kDeviceFailed = 4;
     try {
         return work();
+    } catch (const CudaError& error) {
+        last_words(error.what());
+        processes.abort(kDeviceFailed);
+        throw;
     } catch (const InputError&) {
         throw;
     } catch (const IoError&) {
@@ -59,7 +66,6 @@ auto in_step(Communicator& processes, Work&& work) {
     } catch (const Interrupted&) {
         throw;
     } catch (...) {
-        constexpr int kFailed = 3;
         processes.abort(kFailed);
         throw;
     }
@@ -167,16 +173,16 @@ std::vector<ProcessReport> gathered_reports(Communicator& processes) {
 
 /// Process 0 does its part of what it orders.
 template <class Work>
-auto as_all(Communicator& processes, Order order, Work&& work) {
+auto as_all(Communicator& processes, const LastWords& last_words, Order order, Work&& work) {
     give(processes, order);
-    return in_step(processes, work);
+    return in_step(processes, last_words, work);
 }
 
 /// Process 0's solver, which has all the others do the same. Its frame is process 0's share.
 class TeamSolver final : public sim::Solver {
 public:
-    TeamSolver(Processes processes, std::unique_ptr<sim::Solver> own)
-        : processes_(std::move(processes)), own_(std::move(own)) {}
+    TeamSolver(Processes processes, LastWords last_words, std::unique_ptr<sim::Solver> own)
+        : processes_(std::move(processes)), last_words_(std::move(last_words)), own_(std::move(own)) {}
 
     void start(const sim::StartContext& context) override {
         all({Task::kStart}, [&] { own_->start(context); });
@@ -220,10 +226,11 @@ public:
 private:
     template <class Work>
     auto all(Order order, Work&& work) const -> decltype(work()) {
-        return as_all(*processes_, order, work);
+        return as_all(*processes_, last_words_, order, work);
     }
 
     Processes processes_;
+    LastWords last_words_;
     std::unique_ptr<sim::Solver> own_;
 };
 
@@ -283,7 +290,8 @@ void obey(Communicator& processes, const Order& order, Follower& follower) {
 
 }  // namespace
 
-Team::Team(Processes processes) : processes_(std::move(processes)) {
+Team::Team(Processes processes, LastWords last_words)
+    : processes_(std::move(processes)), last_words_(std::move(last_words)) {
     if (processes_ && !processes_->several()) processes_.reset();
 }
 
@@ -294,17 +302,19 @@ Team::~Team() {
 std::unique_ptr<sim::Solver> Team::create(const MakeSolver& make) {
     if (!processes_) return make(nullptr);
     give(*processes_, {Task::kCreate});
-    return std::make_unique<TeamSolver>(processes_, dist::together(*processes_, [&] { return make(processes_); }));
+    return std::make_unique<TeamSolver>(processes_, last_words_,
+                                        dist::together(*processes_, [&] { return make(processes_); }));
 }
 
 std::vector<sim::Scalar> Team::measure(const sim::Frame& share) const {
     if (!processes_) return measure::measure_frame(share);
-    return as_all(*processes_, {Task::kMeasure}, [&] { return measure::measure_frame(share, *processes_); });
+    return as_all(*processes_, last_words_, {Task::kMeasure},
+                  [&] { return measure::measure_frame(share, *processes_); });
 }
 
 void Team::write_frame(const std::filesystem::path& path, const sim::Frame& share) const {
     if (!processes_) return io::write_vtp(path, share);
-    as_all(*processes_, {Task::kWriteFrame}, [&] { write_shares(*processes_, share, path); });
+    as_all(*processes_, last_words_, {Task::kWriteFrame}, [&] { write_shares(*processes_, share, path); });
 }
 
 std::vector<ProcessReport> Team::report() const {
@@ -313,7 +323,7 @@ std::vector<ProcessReport> Team::report() const {
     return gathered_reports(*processes_);
 }
 
-void follow(const Processes& processes, const MakeSolver& make) {
+void follow(const Processes& processes, const LastWords& last_words, const MakeSolver& make) {
     Follower follower;
     while (true) {
         const Order order = give(*processes, {});
@@ -323,7 +333,7 @@ void follow(const Processes& processes, const MakeSolver& make) {
                 follower = {};
                 follower.solver = dist::together(*processes, [&] { return make(processes); });
             } else {
-                in_step(*processes, [&] { obey(*processes, order, follower); });
+                in_step(*processes, last_words, [&] { obey(*processes, order, follower); });
             }
         } catch (const std::exception&) {
             // Process 0 has the same error and decides what follows from it: a checkpoint, or the end.

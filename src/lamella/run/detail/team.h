@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 namespace lamella::run {
 
+using LastWords = std::function<void(std::string_view)>;
 using MakeSolver = std::function<std::unique_ptr<sim::Solver>(const std::shared_ptr<dist::Communicator>&)>;
 
 /// What one process has used so far.
@@ -23,7 +25,8 @@ struct ProcessReport {
 class Team {
 public:
     /// @param processes  empty: this process is alone
-    explicit Team(std::shared_ptr<dist::Communicator> processes);
+    /// @param last_words  hears why this process ends the others: it met an error that they do not know of
+    Team(std::shared_ptr<dist::Communicator> processes, LastWords last_words);
     ~Team();  ///< lets the others go
     Team(const Team&) = delete;
     Team& operator=(const Team&) = delete;
@@ -43,10 +46,10 @@ public:
 
 private:
     std::shared_ptr<dist::Communicator> processes_;
+    LastWords last_words_;
 };
 
-/// What every other process does: follows process 0 until that lets it go. @throws  errors that no other process knows
-/// of
-void follow(const std::shared_ptr<dist::Communicator>& processes, const MakeSolver& make);
+/// What every other process does: follows process 0 until that lets it go. @param last_words  as of Team
+void follow(const std::shared_ptr<dist::Communicator>& processes, const LastWords& last_words, const MakeSolver& make);
 
 }  // namespace lamella::run

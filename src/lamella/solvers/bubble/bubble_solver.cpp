@@ -4,8 +4,10 @@
 #include "lamella/core/fixed_sum.h"
 #include "lamella/core/parallel.h"
 #include "lamella/dist/agree.h"
+#include "lamella/dist/gather.h"
 #include "lamella/solvers/bubble/census.h"
 #include "lamella/solvers/bubble/detail/device_runner.h"
+#include "lamella/solvers/bubble/detail/device_team.h"
 #include "lamella/solvers/bubble/relax.h"
 #include "lamella/solvers/bubble/removal.h"
 #include "lamella/solvers/bubble/start.h"
@@ -15,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 namespace lamella::bubble {
 namespace {
@@ -100,9 +103,6 @@ BubbleSolver<D>::BubbleSolver(const Options& options, const sim::SolverInput& in
       input_(input),
       domain_(input.processes ? *input.processes : static_cast<dist::Communicator&>(alone_)) {
     check_together(options, input.options);
-    if (input.device != Device::kCpu && domain_.several())
-        throw InputError(input.options.where,
-                         "several processes compute on CPUs only; use --device cpu, or one process");
     if (input.device != Device::kCpu)
         if (const std::string what = detail::not_on_device(options); !what.empty())
             throw InputError(input.options.where, what + " does not run on a GPU; use --device cpu");
@@ -157,8 +157,10 @@ void BubbleSolver<D>::start(const sim::StartContext& context) {
 template <int D>
 void BubbleSolver<D>::take_to_device() {
     if (input_.device == Device::kCpu) return;
-    device_ = input_.device == Device::kCuda ? detail::make_cuda_runner<D>(options_)
-                                             : detail::make_twin_runner<D>(options_, HostMachine::Order::kShuffled);
+    auto team = detail::make_device_team<D>(domain_, system_->ownership());
+    device_ = input_.device == Device::kCuda
+                  ? detail::make_cuda_runner<D>(options_, std::move(team))
+                  : detail::make_twin_runner<D>(options_, HostMachine::Order::kShuffled, std::move(team));
     device_->upload(system_->foam, system_->model, clock_, integrator_->state());
     observed_ = true;
 }
@@ -183,22 +185,35 @@ void BubbleSolver<D>::look_for_the_largest() {
     largest_size_ = domain_.largest(parallel_max(foam.slots, 0.0, [&](std::size_t i) { return foam.size[i]; }));
 }
 
-/// Many steps at once, as far as nothing of the host's is due.
+/// As the steps of the CPU leave them: in the order of steps and ids, and with several processes on the first of them.
 template <int D>
-sim::StepReport BubbleSolver<D>::advance_on_device(double time_limit) {
-    constexpr std::int64_t kStepsPerVisit = 64;
-    const Clock before = clock_;
-    device_->advance(time_limit, kStepsPerVisit);
-    observed_ = false;
-    const detail::Control& control = device_->control();
-    clock_ = control.clock;
-    largest_size_ = control.max_size;
-    for (const detail::VanishedBubble<D>& bubble : device_->take_vanished()) {
+void BubbleSolver<D>::take_vanished_from_device() {
+    using Vanished = detail::VanishedBubble<D>;
+    const std::vector<Vanished> own = device_->take_vanished();
+    std::vector<Vanished> all = dist::gather(domain_.processes(), std::span<const Vanished>(own));
+    std::sort(all.begin(), all.end(),
+              [](const Vanished& a, const Vanished& b) { return a.step != b.step ? a.step < b.step : a.id < b.id; });
+    for (const Vanished& bubble : all) {
         sim::Event event{
             .time = bubble.time, .kind = "remove", .position = {}, .detail = fmt::format("bubble {}", bubble.id)};
         for (std::size_t k = 0; k < D; ++k) event.position[k] = bubble.position[k];
         events_.push_back(std::move(event));
     }
+}
+
+/// Many steps at once, as far as nothing of the host's is due.
+template <int D>
+sim::StepReport BubbleSolver<D>::advance_on_device(double time_limit) {
+    constexpr std::int64_t kStepsPerVisit = 64;
+    const auto working = system_->ownership().working();
+    const Clock before = clock_;
+    const std::uint64_t live_before = device_->control().live;
+    device_->advance(time_limit, kStepsPerVisit);
+    observed_ = false;
+    const detail::Control& control = device_->control();
+    clock_ = control.clock;
+    largest_size_ = control.max_size;
+    if (control.live < live_before) take_vanished_from_device();
     if (control.waiting == detail::Waiting::kUnderflow)
         throw NumericalError(step_underflow(control.error, control.step_tolerance));
     if (control.waiting == detail::Waiting::kNothing)
@@ -233,7 +248,7 @@ void BubbleSolver<D>::remember_start() {
 template <int D>
 sim::StepReport BubbleSolver<D>::advance(double time_limit) {
     if (device_) return advance_on_device(time_limit);
-    const auto working = system_->working();
+    const auto working = system_->ownership().working();
     const double wanted = std::min(integrator_->next_step(), options_.integrator.max_step);
     const Landing landing = clock_.landing(time_limit, time_rate_, wanted);
     const Step step = integrator_->step(*system_, landing.longest);

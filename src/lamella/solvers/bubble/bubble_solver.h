@@ -63,6 +63,7 @@ private:
     void make_integrator();
     void take_to_device();
     sim::StepReport advance_on_device(double time_limit);
+    void take_vanished_from_device();
     /// Brings the foam up to date with the device, where that holds it.
     void observe() const;
     std::size_t live() const;

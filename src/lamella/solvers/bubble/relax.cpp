@@ -175,7 +175,7 @@ private:
 
 template <int D>
 Relaxation relax(System<D>& system, const Options& options, const sim::StartContext& context) {
-    const auto working = system.working();
+    const auto working = system.ownership().working();
     Fire<D> fire(system, options);
     Relaxation result;
     double first = 0.0;

@@ -16,7 +16,7 @@ System<D>::System(const Options& options, Domain& domain)
       options_(options),
       domain_(&domain),
       liquid_(options, model, foam.box),
-      balance_(domain.processes()) {}
+      ownership_(domain) {}
 
 template <int D>
 void System<D>::prepare(LiquidMotion motion) {
@@ -51,14 +51,10 @@ template <int D>
 void System<D>::distribute() {
     if (!domain_->several()) return;
     dist::Communicator& processes = domain_->processes();
-    const bool reweighted = balance_.update(foam.slots);
-    if (!partition_ || unbalanced_ || reweighted || !(partitioned_lengths_ == foam.box.lengths)) {
-        partition_.emplace(processes, foam.box, pointers<D>(foam.position), foam.slots, balance_.weights());
-        partitioned_lengths_ = foam.box.lengths;
-    }
+    ownership_.update(foam.box, foam.slots, [&] { return pointers<D>(foam.position); });
     std::vector<int> owner(foam.slots);
     parallel_for(foam.slots, [&](std::size_t i) {
-        owner[i] = foam.alive(i) ? partition_->owner(place(i)) : dist::Migration::kGone;
+        owner[i] = foam.alive(i) ? ownership_.owner(place(i)) : dist::Migration::kGone;
     });
     const dist::Migration migration(processes, owner);
     foam.slots = migration.count();
@@ -69,10 +65,7 @@ void System<D>::distribute() {
     };
     Foam<D>::for_each_column(foam, [&](const std::string&, auto& column) { move(column); });
     for (Column* column : attached_in_use()) move(*column);
-
-    constexpr double kWorthANewPartition = 1.05;
-    const double most = domain_->largest(static_cast<double>(foam.slots) / balance_.share());
-    unbalanced_ = most > kWorthANewPartition * static_cast<double>(foam.live);
+    ownership_.settle(foam.slots, foam.live);
 }
 
 template <int D>
@@ -97,13 +90,11 @@ dist::Halo System<D>::find_copies(const std::vector<std::uint32_t>& kept, double
     if (!domain_->several()) return {};
     dist::Communicator& processes = domain_->processes();
     std::vector<std::vector<std::uint32_t>> wanted(static_cast<std::size_t>(processes.size()));
+    const dist::Part<D> part = ownership_.own_part();
     for (std::uint32_t n = 0; n < kept.size(); ++n) {
         const double reach = Shape<D>::radius(foam.size[kept[n]]) + largest_radius + skin_;
         const Vec<D> center = place(kept[n]);
-        if (partition_->holds_all_near(processes.rank(), center, reach)) continue;
-        partition_->for_each_near(center, reach, [&](int rank) {
-            if (rank != processes.rank()) wanted[static_cast<std::size_t>(rank)].push_back(n);
-        });
+        if (!part.holds_all_near(center, reach)) ownership_.want_copies(n, center, reach, wanted);
     }
     return {processes, std::move(wanted)};
 }

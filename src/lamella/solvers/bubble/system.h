@@ -1,17 +1,15 @@
 #pragma once
 
-#include "lamella/dist/balance.h"
-#include "lamella/dist/partition.h"
 #include "lamella/solvers/bubble/domain.h"
 #include "lamella/solvers/bubble/foam.h"
 #include "lamella/solvers/bubble/increment.h"
 #include "lamella/solvers/bubble/liquid.h"
 #include "lamella/solvers/bubble/model.h"
 #include "lamella/solvers/bubble/options.h"
+#include "lamella/solvers/bubble/ownership.h"
 #include "lamella/solvers/bubble/rates.h"
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace lamella::bubble {
@@ -42,13 +40,11 @@ public:
 
     const spatial::NeighborList<D>& neighbors() const { return neighbors_; }
     Domain& domain() const { return *domain_; }
+    Ownership<D>& ownership() { return ownership_; }
     std::size_t length() const { return spatial::padded(foam.slots); }
 
     /// Takes the box, its walls, and the liquid's motion for the evaluations to come. Call after changing the box.
     void prepare(LiquidMotion motion);
-
-    /// Held while steps are made: what each process does meanwhile is measured, and who is slower gets fewer bubbles.
-    dist::Balance::Working working() { return dist::Balance::Working(balance_); }
 
     /// Hands every bubble to the process that owns its place, and drops vanished ones; with one process, nothing.
     void distribute();
@@ -94,10 +90,7 @@ private:
     Domain* domain_;
     Liquid<D> liquid_;
     spatial::NeighborList<D> neighbors_;
-    std::optional<dist::Partition<D>> partition_;
-    Vec<D> partitioned_lengths_;  // of the box that partition_ cuts
-    bool unbalanced_ = false;     // partition_ has become so
-    dist::Balance balance_;
+    Ownership<D> ownership_;
     Columns<D> built_position_;
     Column built_radius_;
     double skin_ = 0.0;

@@ -74,7 +74,7 @@ private:
         c.first_stiffness = c.stiffness;
         c.step_tolerance = c.tolerance;
         if (c.relative_error == 0) return begin_attempt(c);
-        c.sum_scale = sum_bound(Shape<D>::radius(c.max_size));
+        c.sum_scale = c.sum_bound(Shape<D>::radius(c.max_size));
         c.phase = Phase::kMeanRadius;
     }
 
@@ -137,7 +137,7 @@ private:
 
     LAMELLA_HOST_DEVICE void after_error(Control& c, const UpdateSums& update) const {
         if (c.rms_error == 0) return judge(c, update.maximum[0]);
-        c.sum_scale = sum_bound(update.maximum[0]);
+        c.sum_scale = c.sum_bound(update.maximum[0]);
         c.phase = Phase::kErrorSquares;
     }
 
@@ -168,8 +168,8 @@ private:
         if (c.vanishing == 0) return begin_step(c);
         if (c.vanishing >= c.live) return wait(c, Waiting::kNothing);
         c.excess = sum_of(FixedSum(view.model.total_size), &update.sum[1]).value();
-        c.sum_scale = sum_bound(c.max_size);
-        c.lost_scale = sum_bound(update.maximum[2]);
+        c.sum_scale = c.sum_bound(c.max_size);
+        c.lost_scale = c.sum_bound(update.maximum[2]);
         c.phase = Phase::kRemove;
     }
 

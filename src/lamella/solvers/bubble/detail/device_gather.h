@@ -5,17 +5,30 @@
 
 namespace lamella::bubble::detail {
 
+/// Which bubbles of a device a loop goes over.
+enum class Bubbles {
+    kAll,
+    kInterior,  ///< those that have no copies in their lists
+    kBorder,    ///< the others
+};
+
 /// Second loop of a turn: the right-hand side of each bubble at the stage, one thread per bubble over its whole list.
 template <int D>
 struct GatherBubble {
     DeviceView<D> view;
     const Control* control;
+    Bubbles which = Bubbles::kAll;
 
+    LAMELLA_HOST_DEVICE std::size_t first() const { return which == Bubbles::kBorder ? control->interior : 0; }
+    LAMELLA_HOST_DEVICE std::size_t end() const {
+        return which == Bubbles::kInterior ? control->interior : control->slots;
+    }
     LAMELLA_HOST_DEVICE std::size_t count() const {
-        return control->running() && control->evaluates() ? control->slots : 0;
+        return control->running() && control->evaluates() ? end() - first() : 0;
     }
 
-    LAMELLA_HOST_DEVICE void operator()(std::size_t i, GatherSums& sums) const {
+    LAMELLA_HOST_DEVICE void operator()(std::size_t n, GatherSums& sums) const {
+        const std::size_t i = first() + n;
         const bool gas = view.model.exchanges_gas();
         if (control->bounds_stiffness())
             gas ? gather<true, true>(i, sums) : gather<false, true>(i, sums);

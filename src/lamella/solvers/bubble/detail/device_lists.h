@@ -1,6 +1,7 @@
 #pragma once
 
-#include "lamella/solvers/bubble/detail/device_view.h"
+#include "lamella/solvers/bubble/detail/device_columns.h"
+#include "lamella/spatial/search_frame.h"
 
 // The neighbor lists of a foam on a GPU: bubbles sorted by cell, lists counted and then filled, each sorted by id as on
 // the CPU, so that sums over a list are the same bits. Every struct is the body of one loop.
@@ -74,6 +75,7 @@ struct CellSearch {
 template <int D>
 struct FindCells {
     spatial::CellLayout<D> layout;
+    spatial::SearchFrame<D> frame;
     const double* position[D];
     const double* size;
     std::uint32_t* cell;
@@ -81,7 +83,7 @@ struct FindCells {
 
     LAMELLA_HOST_DEVICE void operator()(std::size_t i) const {
         Vec<D> x;
-        for (int k = 0; k < D; ++k) x[static_cast<std::size_t>(k)] = position[k][i];
+        for (std::size_t k = 0; k < D; ++k) x[k] = frame.place(k, position[k][i]);
         cell[i] = static_cast<std::uint32_t>(size[i] > 0.0 ? layout.cell_of(x) : layout.count());
         slot[i] = static_cast<std::uint32_t>(i);
     }
@@ -110,6 +112,7 @@ struct FindCellStarts {
 /// The balls copied in cell order.
 template <int D>
 struct SortBalls {
+    spatial::SearchFrame<D> frame;
     const double* position[D];
     const double* size;
     const std::uint32_t* cell_order;
@@ -118,41 +121,81 @@ struct SortBalls {
     LAMELLA_HOST_DEVICE void operator()(std::size_t i) const {
         const std::uint32_t from = cell_order[i];
         double x[D];
-        for (int k = 0; k < D; ++k) x[k] = position[k][from];
+        for (std::size_t k = 0; k < D; ++k) x[k] = frame.place(k, position[k][from]);
         ball[i] = staged_ball<D>(x, {Shape<D>::radius(size[from]), 0.0});
     }
 };
 
+/// What a ball is to the lists: those that have copies in their lists stand after those that have none.
+enum class Kind : std::uint32_t { kInterior, kBorder, kCopy, kEnd };
+
 template <int D>
 struct CountNeighbors {
     CellSearch<D> search;
+    const std::uint32_t* cell_order;
+    std::uint32_t first_copy;  ///< copies have slots from here on
     std::uint32_t* found;
+    std::uint32_t* kind;  ///< nullptr: there are no copies
 
     LAMELLA_HOST_DEVICE void operator()(std::size_t i) const {
         std::uint32_t n = 0;
-        search.visit(i, [&](std::uint32_t, std::uint32_t) { ++n; });
+        Kind mine = cell_order[i] >= first_copy ? Kind::kCopy : Kind::kInterior;
+        if (mine != Kind::kCopy)
+            search.visit(i, [&](std::uint32_t j, std::uint32_t) {
+                ++n;
+                if (cell_order[j] >= first_copy) mine = Kind::kBorder;
+            });
         found[i] = n;
+        if (kind != nullptr) kind[i] = static_cast<std::uint32_t>(mine);
     }
 };
 
-/// Final place of each ball: windows of the cell order sorted by list length, longest first.
+/// The balls that have lists, in an order; copies follow them. A number here is a place in the order of the cells.
+struct ListOrder {
+    const std::uint32_t* ball;  ///< nullptr: the order of the cells itself
+    LAMELLA_HOST_DEVICE std::size_t operator()(std::size_t n) const { return ball != nullptr ? ball[n] : n; }
+};
+
+/// Final place of each ball that has a list: windows of their order sorted by list length, longest first.
 struct PlaceBalls {
+    ListOrder listed;
     const std::uint32_t* found;
     const std::uint32_t* cell_order;
+    std::size_t interior;  ///< no window goes across this border
     std::size_t count;
     std::uint32_t* place;   ///< cell order -> final slot
     std::uint32_t* order;   ///< final slot -> old slot
     std::uint32_t* length;  ///< of the list of a final slot
 
-    LAMELLA_HOST_DEVICE void operator()(std::size_t i) const {
-        const std::size_t begin = i / kListWindow * kListWindow;
-        const std::size_t end = begin + kListWindow < count ? begin + kListWindow : count;
-        const std::uint32_t mine = found[i];
+    LAMELLA_HOST_DEVICE void operator()(std::size_t n) const {
+        std::size_t begin = n / kListWindow * kListWindow;
+        std::size_t end = begin + kListWindow < count ? begin + kListWindow : count;
+        if (n >= interior && begin < interior) begin = interior;
+        if (n < interior && end > interior) end = interior;
+        const std::size_t ball = listed(n);
+        const std::uint32_t mine = found[ball];
         std::size_t rank = begin;
-        for (std::size_t j = begin; j < end; ++j) rank += found[j] > mine || (found[j] == mine && j < i) ? 1U : 0U;
-        place[i] = static_cast<std::uint32_t>(rank);
-        order[rank] = cell_order[i];
+        for (std::size_t j = begin; j < end; ++j) {
+            const std::uint32_t other = found[listed(j)];
+            rank += other > mine || (other == mine && j < n) ? 1U : 0U;
+        }
+        place[ball] = static_cast<std::uint32_t>(rank);
+        order[rank] = cell_order[ball];
         length[rank] = mine;
+    }
+};
+
+/// Copies stand behind the `count` balls that have lists, in the order in which they came.
+struct PlaceCopies {
+    ListOrder listed;
+    const std::uint32_t* cell_order;
+    std::uint32_t first_copy;
+    std::size_t count;
+    std::uint32_t* place;
+
+    LAMELLA_HOST_DEVICE void operator()(std::size_t n) const {
+        const std::size_t ball = listed(count + n);
+        place[ball] = static_cast<std::uint32_t>(count + cell_order[ball] - first_copy);
     }
 };
 
@@ -170,7 +213,13 @@ struct MeasureSlices {
     }
 };
 
-/// Moves the columns of a bubble to its new slot, and notes where it stands.
+struct InvertOrder {
+    const std::uint32_t* order;
+    std::uint32_t* inverse;
+    LAMELLA_HOST_DEVICE void operator()(std::size_t i) const { inverse[order[i]] = static_cast<std::uint32_t>(i); }
+};
+
+/// Moves a bubble to its new slot, and notes where it stands.
 template <int D>
 struct ReorderBubble {
     DeviceView<D> from;
@@ -178,34 +227,32 @@ struct ReorderBubble {
     const std::uint32_t* order;
 
     LAMELLA_HOST_DEVICE void operator()(std::size_t i) const {
-        const std::uint32_t old = order[i];
-        for (int k = 0; k < D; ++k) {
-            to.position[k][i] = from.position[k][old];
-            to.velocity[k][i] = from.velocity[k][old];
-            to.start[k][i] = from.start[k][old];
-            to.marked[k][i] = from.marked[k][old];
-            to.wraps[k][i] = from.wraps[k][old];
-            to.built_position[k][i] = from.position[k][old];
-        }
-        to.size[i] = from.size[old];
-        to.size_rate[i] = from.size_rate[old];
-        to.path_length[i] = from.path_length[old];
-        to.id[i] = from.id[old];
-        to.built_radius[i] = Shape<D>::radius(from.size[old]);
+        const BubbleRecord<D> bubble = record_of(from, order[i]);
+        put_record(to, i, bubble);
+        for (int k = 0; k < D; ++k) to.built_position[k][i] = bubble.position[k];
+        to.built_radius[i] = Shape<D>::radius(bubble.size);
     }
+};
+
+struct MoveIds {
+    const std::int64_t* from;
+    std::int64_t* to;
+    LAMELLA_HOST_DEVICE void operator()(std::size_t n) const { to[n] = from[n]; }
 };
 
 /// Writes the list of each ball in the order of the neighbors' ids.
 template <int D>
 struct FillLists {
     CellSearch<D> search;
+    ListOrder listed;
     const std::uint32_t* place;
     const std::int64_t* id;  ///< by final slot
     const std::uint64_t* slice_start;
     std::uint32_t* index;
     std::uint32_t* image;  ///< nullptr: none are kept
 
-    LAMELLA_HOST_DEVICE void operator()(std::size_t i) const {
+    LAMELLA_HOST_DEVICE void operator()(std::size_t n) const {
+        const std::size_t i = listed(n);
         const std::uint32_t me = place[i];
         const std::uint64_t first = slice_start[me / kSlice] + me % kSlice;
         std::uint64_t end = first;
@@ -241,10 +288,6 @@ struct AddRadii {
     LAMELLA_HOST_DEVICE void operator()(std::size_t i, Reduction<1, 2>& sums) const {
         add_term(FixedSum(scale), Shape<D>::radius(size[i]), sums.sum);
     }
-};
-struct KeepSums {
-    Reduction<1, 2>* result;
-    LAMELLA_HOST_DEVICE void operator()(const Reduction<1, 2>& sums, const Reduction<1, 2>&) const { *result = sums; }
 };
 
 template <int D>

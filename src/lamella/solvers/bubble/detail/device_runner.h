@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lamella/solvers/bubble/clock.h"
+#include "lamella/solvers/bubble/detail/device_team.h"
 #include "lamella/solvers/bubble/detail/device_view.h"
 #include "lamella/solvers/bubble/foam.h"
 #include "lamella/solvers/bubble/integrator_state.h"
@@ -34,7 +35,7 @@ public:
     virtual void download(Foam<D>& foam) = 0;
     /// Displacements 'since the last frame' count from here.
     virtual void mark_frame() = 0;
-    /// The bubbles that vanished since the last call, in the order of steps and ids.
+    /// The bubbles of this device that vanished since the last call, in any order.
     virtual std::vector<VanishedBubble<D>> take_vanished() = 0;
 };
 
@@ -42,11 +43,15 @@ public:
 std::string not_on_device(const Options& options);
 
 /// On the GPU. @throws IoError  the device fails
+/// @param team  of the devices that share the foam; nullptr: it lives on this one
 template <int D>
-std::unique_ptr<DeviceRunner<D>> make_cuda_runner(const Options& options);
+std::unique_ptr<DeviceRunner<D>> make_cuda_runner(const Options& options,
+                                                  std::unique_ptr<DeviceTeam<D>> team = nullptr);
 
 /// The CPU twin of it, with the threads of each loop in this order.
 template <int D>
-std::unique_ptr<DeviceRunner<D>> make_twin_runner(const Options& options, HostMachine::Order order);
+std::unique_ptr<DeviceRunner<D>> make_twin_runner(const Options& options,
+                                                  HostMachine::Order order,
+                                                  std::unique_ptr<DeviceTeam<D>> team = nullptr);
 
 }  // namespace lamella::bubble::detail

@@ -53,7 +53,8 @@ struct VanishedBubble {
     double position[D];
 };
 
-/// Everything the bodies of the loops read and write, but for the Control. A part of each body: pointers that come
+/// Everything the bodies of the loops read and write, but for the Control. Bubbles come first; copies of other devices'
+/// bubbles follow in the columns that neighbors read. A part of each body: pointers that come
 /// with a kernel cost nothing to follow.
 template <int D>
 struct DeviceView {
@@ -134,9 +135,11 @@ struct Control {
     std::int32_t relative_error = 0;
     std::int32_t rms_error = 0;
     std::int32_t printed_removal = 0;
+    double most_terms = kMostTerms;  ///< that a sum over all devices may have
     // The foam.
-    std::uint64_t slots = 0;
-    std::uint64_t live = 0;
+    std::uint64_t slots = 0;     ///< bubbles of this device, vanished ones included
+    std::uint64_t interior = 0;  ///< the first so many have no copies of another device's in their lists
+    std::uint64_t live = 0;      ///< bubbles of all devices
     double max_size = 0.0;
     double reach = 0.0;        ///< how far |dx| + dR may go before lists are outgrown
     double least_reach = 0.0;  ///< wanted of the next lists
@@ -172,6 +175,8 @@ struct Control {
     double removal_factor = 1.0;
     std::uint32_t events = 0;
 
+    /// The scale of exact_sum: what its terms may add up to, from the largest of them.
+    LAMELLA_HOST_DEVICE double sum_bound(double largest_term) const { return largest_term * most_terms; }
     LAMELLA_HOST_DEVICE bool running() const { return waiting == Waiting::kNot; }
     LAMELLA_HOST_DEVICE bool last_stage() const { return stage == stages; }
     LAMELLA_HOST_DEVICE bool evaluates() const { return phase == Phase::kFirst || phase == Phase::kStage; }
@@ -194,7 +199,4 @@ LAMELLA_HOST_DEVICE inline FixedSum sum_of(const FixedSum& none, const std::int6
     sum.low() = words[1];
     return sum;
 }
-/// The scale of exact_sum: what its terms may add up to, from the largest of them.
-LAMELLA_HOST_DEVICE inline double sum_bound(double largest_term) { return largest_term * kMostTerms; }
-
 }  // namespace lamella::bubble::detail
