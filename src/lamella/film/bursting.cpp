@@ -42,8 +42,9 @@ void refuse_what_melp_alone_knows(const Problem& films, const char* solver) {
     if (!films.walls.empty()) throw InputError(std::string(solver) + ": [[wall]] is for solver melp");
     if (!films.releases.empty()) throw InputError(std::string(solver) + ": [[faucet]] is for solver melp");
     for (const Event& event : films.events)
-        if (event.kind == Event::Kind::kPuncture)
-            throw InputError(std::string(solver) + ": [[event]] with kind = \"puncture\" is for solver melp");
+        if (event.kind == Event::Kind::kPuncture || event.kind == Event::Kind::kSpot)
+            throw InputError(std::string(solver) +
+                             ": [[event]] with kind = \"puncture\" or \"spot\" is for solver melp");
 }
 
 }  // namespace lamella::film

@@ -191,6 +191,14 @@ film::Event event_of(const EventTable& event, const FoamMesh& mesh, const Source
         throw InputError(where, "event.interval = 0 puts all repetitions at one time; say how far apart they are");
     if (event.kind == film::Event::Kind::kPuncture)
         return {.kind = event.kind, .time = event.time, .center = event.center, .radius = event.radius};
+    if (event.kind == film::Event::Kind::kSpot) {
+        if (!(event.radius > 0.0)) throw InputError(where, "event.radius is missing: of the spot, e.g. \"5 mm\"");
+        return {.kind = event.kind,
+                .time = event.time,
+                .center = event.center,
+                .radius = event.radius,
+                .spread = event.spread};
+    }
     if (!random && kind_of(event.region) != RegionKind::kClosed)
         throw InputError(where, fmt::format("event.region = {} is no bubble; there are {} regions beside the outside",
                                             event.region, mesh.regions.size() - 1));

@@ -67,8 +67,20 @@ struct BubbleTable {
 };
 
 enum class FilmShape {
-    kDisk, kRectangle, kHemisphere, kBallInRing, kCylinder, kCatenoid, kFrame, kDoubleBubble, kTripleBubble, kQuadrupleBubble,
-    kCube, kKelvin, kWeairePhelan, kMesh
+    kDisk,
+    kRectangle,
+    kHemisphere,
+    kBallInRing,
+    kCylinder,
+    kCatenoid,
+    kFrame,
+    kDoubleBubble,
+    kTripleBubble,
+    kQuadrupleBubble,
+    kCube,
+    kKelvin,
+    kWeairePhelan,
+    kMesh
 };
 
 /// One [[film]]
@@ -121,11 +133,14 @@ struct FilmTable {
                {"of a catenoid: with the wide neck or the narrow one"});
         option("u", u, sim::any_number(), {"first side of a rectangle", "length"});
         option("v", v, sim::any_number(), {"second side of a rectangle, at a right angle", "length"});
-        option("focus", focus, sim::any_number(), {"point of a rectangle around which its edges are shorter", "length"});
-        option("focus_radius", focus_radius, sim::at_least(0.0), {"rows and columns so near have focus_edge", "length"});
-        option("focus_edge", focus_edge, sim::at_least(0.0),
-               {"length of edges there; they grow by a tenth of the distance, up to resolution.edge_length; 0: no focus",
-                "length"});
+        option("focus", focus, sim::any_number(),
+               {"point of a rectangle around which its edges are shorter", "length"});
+        option("focus_radius", focus_radius, sim::at_least(0.0),
+               {"rows and columns so near have focus_edge", "length"});
+        option(
+            "focus_edge", focus_edge, sim::at_least(0.0),
+            {"length of edges there; they grow by a tenth of the distance, up to resolution.edge_length; 0: no focus",
+             "length"});
         option("frame", frame,
                sim::choices<mesh::FrameShape>({{"tetrahedron", mesh::FrameShape::kTetrahedron},
                                                {"cube", mesh::FrameShape::kCube},
@@ -154,10 +169,11 @@ struct FoamTable {
     void visit(Visitor&& option) {
         option("count", count, sim::between(1, 100'000), {"bubbles"});
         option("volume", volume, sim::more_than(0.0), {"of a bubble, on average", "length^3"});
-        option("sizes", sizes,
-               sim::choices<FoamSizes>(
-                   {{"equal", FoamSizes::kEqual}, {"normal", FoamSizes::kNormal}, {"lognormal", FoamSizes::kLognormal}}),
-               {"how the bubbles' radii are distributed"});
+        option(
+            "sizes", sizes,
+            sim::choices<FoamSizes>(
+                {{"equal", FoamSizes::kEqual}, {"normal", FoamSizes::kNormal}, {"lognormal", FoamSizes::kLognormal}}),
+            {"how the bubbles' radii are distributed"});
         option("deviation", deviation, sim::between(0.0, 1.0),
                {"standard deviation of the radii over their mean, for normal and lognormal"});
     }
@@ -196,8 +212,7 @@ struct WireTable {
 
     template <class Visitor>
     void visit(Visitor&& option) {
-        option("shape", shape,
-               sim::choices<WireShape>({{"ring", WireShape::kRing}, {"segment", WireShape::kSegment}}),
+        option("shape", shape, sim::choices<WireShape>({{"ring", WireShape::kRing}, {"segment", WireShape::kSegment}}),
                {"ring: around center; segment: from one point to another. Several make a polyline or a frame"});
         option("center", center, sim::any_number(), {"of a ring", "length"});
         option("axis", axis, sim::any_number(), {"of a ring"});
@@ -229,29 +244,32 @@ struct EventTable {
     double duration = 0.0;
     Vec3 center;
     double radius = 0.0;
+    double spread = 0.0;
 
     template <class Visitor>
     void visit(Visitor&& option) {
         option("time", time, sim::at_least(0.0), {"when", "time"});
         option("kind", kind,
-               sim::choices<film::Event::Kind>(
-                   {{"pop", film::Event::Kind::kPop},
-                    {"inflate", film::Event::Kind::kInflate},
-                    {"puncture", film::Event::Kind::kPuncture}}),
+               sim::choices<film::Event::Kind>({{"pop", film::Event::Kind::kPop},
+                                                {"inflate", film::Event::Kind::kInflate},
+                                                {"puncture", film::Event::Kind::kPuncture},
+                                                {"spot", film::Event::Kind::kSpot}}),
                {"pop: the film to another region bursts; inflate: a bubble gets another volume; puncture: a film gets a"
-                " hole, for solver melp"});
+                " hole, and spot: one of black film, for solver melp"});
         option("repeat", repeat, sim::between(1, 1'000'000), {"how often it happens"});
         option("interval", interval, sim::at_least(0.0), {"between one time and the next", "time"});
         option("region", region, sim::at_least(0), {"which bubble; 0: pop one at random that touches the outside"});
         option("into", into, sim::at_least(-1),
                {"pop: the region that it joins; -1: the one that shares most film with it"});
-        option("volume", volume, sim::at_least(0.0), {"inflate: the new volume; 0: `factor` times the first", "length^3"});
+        option("volume", volume, sim::at_least(0.0),
+               {"inflate: the new volume; 0: `factor` times the first", "length^3"});
         option("factor", factor, sim::more_than(0.0), {"inflate: the new volume over the first"});
         option("duration", duration, sim::at_least(0.0),
                {"inflate: how long it takes, for the solvers that move", "time"});
-        option("center", center, sim::any_number(), {"puncture: the nearest film gets the hole", "length"});
+        option("center", center, sim::any_number(), {"puncture and spot: the nearest film gets it", "length"});
         option("radius", radius, sim::at_least(0.0),
-               {"puncture: of the hole; 0: as small as can be resolved", "length"});
+               {"puncture: of the hole; 0: as small as can be resolved; spot: its own", "length"});
+        option("spread", spread, sim::at_least(0.0), {"spot: it comes to some film within this of center", "length"});
     }
 };
 
@@ -301,13 +319,15 @@ struct SolidTable {
         option("spin", spin, sim::any_number(), {"angular velocity, likewise", "1/time"});
         option("start", start, sim::at_least(0.0), {"when it begins to move", "time"});
         option("end", end, sim::at_least(0.0), {"when it stops; 0: never", "time"});
-        option("period", period, sim::at_least(0.0),
-               {"it moves from start to end of each period and is out of the film between, as a leg that steps; 0: once",
-                "time"});
+        option(
+            "period", period, sim::at_least(0.0),
+            {"it moves from start to end of each period and is out of the film between, as a leg that steps; 0: once",
+             "time"});
         option("stride", stride, sim::any_number(), {"how much farther it begins each period", "length"});
         option("free", free, {"true: what the film does to it moves it"});
         option("mass", mass, sim::at_least(0.0), {"of a free one, beyond that of the film that it covers", "mass"});
-        option("arm", arm, sim::any_number(), {"of a stick with round ends: from its middle to the center of an end; 0: a ball", "length"});
+        option("arm", arm, sim::any_number(),
+               {"of a stick with round ends: from its middle to the center of an end; 0: a ball", "length"});
         option("wet", wet, {"true: films slide on it; false: they burst where it touches them"});
     }
 };

@@ -49,6 +49,35 @@ TEST(BlackFilm, KeepsTheSurfactantOfTheFilmInItsSpots) {
     EXPECT_LT(scalar(*with, "liquid_mass"), 0.95 * scalar(*without, "liquid_mass"));
 }
 
+/// Spots that come on the way: liquid and momentum go to the film around them, surfactant stays.
+TEST(BlackFilm, ComesToAFilmOnTheWay) {
+    const std::string event =
+        "[[event]]\nkind = \"spot\"\ntime = 0.004\ncenter = [0.03, 0.0, 0.02]\nradius = 0.007\n"
+        "spread = 0.01\nrepeat = 2\ninterval = 0.01\n";
+    const auto scene = [&] {
+        return films(kFrame + event, 0.003, "fine_ratio = 8\nblack_film.thickness = 1e-7\n",
+                     "gravity = [0.0, 0.0, -9.81]");
+    };
+    const auto solver = scene();
+    const double liquid = scalar(*solver, "liquid_mass"), surfactant = scalar(*solver, "surfactant_amount");
+    advance_to(*solver, 0.004);
+    EXPECT_LT(scalar(*solver, "film_thickness_min"), 1e-7);
+    advance_to(*solver, 0.02);
+    const auto events = solver->take_events();
+    ASSERT_EQ(events.size(), 2U);
+    for (const auto& e : events) {
+        EXPECT_EQ(e.kind, "spot");
+        EXPECT_LT(norm(e.position - Vec3{{0.03, 0.0, 0.02}}), 0.0101);
+    }
+    EXPECT_GT(norm(events[0].position - events[1].position), 1e-4);
+    EXPECT_NEAR(scalar(*solver, "liquid_mass") / liquid, 1.0, 1e-12);
+    EXPECT_NEAR(scalar(*solver, "surfactant_amount") / surfactant, 1.0, 1e-12);
+    expect_same_bits(scene, 12, 5);
+    EXPECT_THROW(films(kFrame + event, 0.004, "fine_ratio = 8\n"), InputError);  // too small a spot
+    EXPECT_THROW(films(kFrame + event, 0.003, "fine_ratio = 0\n"), InputError);
+    EXPECT_THROW(films(kFrame + std::string("[[event]]\nkind = \"spot\"\n"), 0.003, ""), InputError);
+}
+
 TEST(BlackFilm, IsRefusedWhereItMakesNoSense) {
     EXPECT_THROW(films(kFrame, 0.003, kSpots + "start.spot_thickness = 0.0\n"), InputError);
     EXPECT_THROW(films(kFrame, 0.004, kSpots), InputError);  // spots too small for that

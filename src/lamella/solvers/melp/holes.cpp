@@ -104,6 +104,7 @@ void MelpSolver::apply_events() {
 }
 
 void MelpSolver::apply(const film::Event& event) {
+    if (event.kind == film::Event::Kind::kSpot) return thin_out(event);
     if (is_foam()) return pop(event);
     std::size_t at = coarse_.size();
     double least = std::numeric_limits<double>::infinity();

@@ -86,6 +86,7 @@ private:
     std::optional<std::size_t> place_of(mesh::RegionId region) const;
     std::optional<std::size_t> random_outer_bubble() const;
     void pop(const film::Event& event);
+    void thin_out(const film::Event& event);
     void delete_bubble(std::size_t r);
     void hand_over_even_film(std::size_t r, std::size_t i);
     void join_bubbles(std::size_t from, std::size_t into);

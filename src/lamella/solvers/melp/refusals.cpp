@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace lamella::melp {
 namespace {
@@ -72,6 +74,20 @@ void refuse_unknown_heat(const film::Material& material, const Options& options)
                         heat.temperature, left));
 }
 
+void refuse_unknown_spots(const film::Problem& films, const Options& options) {
+    std::vector<std::pair<const char*, double>> radii;
+    if (options.start.spots > 0) radii.push_back({"melp.start.spot_radius", options.start.spot_radius});
+    for (const film::Event& event : films.events)
+        if (event.kind == film::Event::Kind::kSpot) radii.push_back({"melp: [[event]] spot: radius", event.radius});
+    if (options.fine_ratio == 0 && (!radii.empty() || options.black_film.thickness > 0.0))
+        throw InputError("melp.fine_ratio = 0: black films are where fine particles have little liquid");
+    for (const auto& [name, radius] : radii)
+        if (radius < 2.0 * films.edge_length)
+            throw InputError(fmt::format(
+                "{} = {:.4g} m is too small for resolution.edge_length = {:.4g} m: twice of it at least will do", name,
+                radius, films.edge_length));
+}
+
 }  // namespace
 
 void refuse_unknown_films(const film::Problem& films, const Options& options) {
@@ -99,13 +115,7 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
         else if (options.start.mode_amplitude != 0.0 && options.rim != RimHold::kWetPlate)
             throw InputError("melp.start.mode_amplitude: films that are held by wires start at rest");
     refuse_unknown_heat(films.material, options);
-    if (options.fine_ratio == 0 && (options.start.spots > 0 || options.black_film.thickness > 0.0))
-        throw InputError("melp.fine_ratio = 0: black films are where fine particles have little liquid");
-    if (options.start.spots > 0 && options.start.spot_radius < 2.0 * films.edge_length)
-        throw InputError(
-            fmt::format("melp.start.spot_radius = {:.4g} m is too small for resolution.edge_length = {:.4g} m: "
-                        "twice of it at least will do",
-                        options.start.spot_radius, films.edge_length));
+    refuse_unknown_spots(films, options);
     if (options.black_film.line_tension > 0.0 && options.black_film.thickness == 0.0)
         throw InputError("melp.black_film.line_tension needs black_film.thickness, e.g. \"100 nm\"");
     if (options.exchange_rate > 0.0 && options.fine_ratio == 0)
@@ -114,6 +124,7 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
     refuse_unknown_solids(films, options);
     if (!films.vortices.empty()) throw InputError("melp: [[vortex]] is not built yet; use solver vortex_particle");
     for (const film::Event& event : films.events) {
+        if (event.kind == film::Event::Kind::kSpot) continue;
         if (event.kind == film::Event::Kind::kInflate)
             throw InputError("melp: [[event]] with kind = \"inflate\" is not built yet; use solver vortex_sheet");
         const bool foam = films.bubble_count() > 1;
