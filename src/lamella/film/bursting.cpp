@@ -4,8 +4,11 @@
 #include "lamella/core/random.h"
 #include "lamella/mesh/area.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lamella::film {
@@ -42,9 +45,10 @@ void refuse_what_melp_alone_knows(const Problem& films, const char* solver) {
     if (!films.walls.empty()) throw InputError(std::string(solver) + ": [[wall]] is for solver melp");
     if (!films.releases.empty()) throw InputError(std::string(solver) + ": [[faucet]] is for solver melp");
     for (const Event& event : films.events)
-        if (event.kind == Event::Kind::kPuncture || event.kind == Event::Kind::kSpot)
-            throw InputError(std::string(solver) +
-                             ": [[event]] with kind = \"puncture\" or \"spot\" is for solver melp");
+        for (const auto& [kind, name] :
+             {std::pair{Event::Kind::kPuncture, "puncture"}, std::pair{Event::Kind::kSpot, "spot"}})
+            if (event.kind == kind)
+                throw InputError(fmt::format("{}: [[event]] with kind = \"{}\" is for solver melp", solver, name));
 }
 
 }  // namespace lamella::film

@@ -210,8 +210,8 @@ double lack_of_speed(const VortexParticleSolver& solver) {
     return lack / speed;
 }
 
-/// Within what the triangles resolve. Where a ball is large against the bubble, or the film under it swings fast, the film
-/// cannot: it would have to be squeezed.
+/// Within what the triangles resolve. Where a ball is large against the bubble, or the film under it swings fast, the
+/// film cannot: it would have to be squeezed.
 TEST(MovingFilms, GoAlongWithSolids) {
     for (const char* film : {R"(
 [[film]]
@@ -251,8 +251,8 @@ particles_per_triangle = 5
 
 TEST(MovingFilms, BurstWhereTheyAreAsThinAsAsked) {
     const auto after_a_step = [](const char* scene, const char* thickness) {
-        auto solver = solver_of(scene, {fmt::format("material.thickness={}", thickness),
-                                        "vortex_particle.rupture_thickness=0.7e-6"});
+        auto solver = solver_of(
+            scene, {fmt::format("material.thickness={}", thickness), "vortex_particle.rupture_thickness=0.7e-6"});
         solver->start({});
         solver->advance(1.0);
         return solver;
@@ -276,8 +276,8 @@ TEST(MovingFilms, BurstWhereTheyAreAsThinAsAsked) {
     EXPECT_FALSE(after_a_step(kLast, "1e-6")->stop_reason());
 }
 
-/// The half of a bubble in front of which it lies is seen from inside the bubble; when the other half bursts it is a film
-/// that is seen from the other side, with the swirls that it had.
+/// The half of a bubble in front of which it lies is seen from inside the bubble; when the other half bursts it is a
+/// film that is seen from the other side, with the swirls that it had.
 TEST(MovingFilms, KeepTheirSwirlsWhenTheirBubbleOpens) {
     auto solver = solver_of(R"(
 [[film]]
@@ -395,8 +395,9 @@ TEST(VortexParticleSolver, CarriesLiquidAndSwirlsOverTripleLines) {
 }
 
 TEST(VortexParticleSolver, RefusesWhatItCannotDo) {
-    EXPECT_THROW(solver_of("[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n[vortex_particle]\nmoving=true\njunction=\"sheets\"\n"),
-                 InputError);
+    EXPECT_THROW(
+        solver_of("[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n[vortex_particle]\nmoving=true\njunction=\"sheets\"\n"),
+        InputError);
     EXPECT_THROW(solver_of("[[film]]\nshape=\"frame\"\n"), InputError);
     EXPECT_THROW(
         solver_of("[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n[vortex_particle]\nmoving=true\ntransfer=\"kernel\"\n"),
@@ -438,6 +439,8 @@ TEST(VortexParticleSolver, RefusesWhatItCannotDo) {
     EXPECT_TRUE(says(
         "[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n[[event]]\nkind=\"puncture\"\ntime=0.1\ncenter=[0,0,1]\n" + moving,
         "\"puncture\" is for solver melp"));
+    EXPECT_TRUE(says("[[bubble]]\ncenter=[0,0,0]\nradius=1.0\n[[event]]\nkind=\"spot\"\nradius=0.1\n" + moving,
+                     "\"spot\" is for solver melp"));
     EXPECT_TRUE(says(flying + "[[solid]]\ncenter=[0,0,1]\nradius=0.3\n" + moving, "on bubbles with a velocity"));
     for (const char* wrong : {"period=1.0", "stride=[1,0,0]", "mass=1.0", "free=true\nend=1.0"})
         EXPECT_THROW(solver_of(film + "[[solid]]\nradius=0.1\n" + wrong), InputError) << wrong;
