@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <tuple>
 #include <vector>
 
 // Films as bodies: what may push and twist them as a whole, and what may not.
@@ -29,6 +30,9 @@ public:
                 std::vector<std::size_t> members,
                 std::vector<Rigid> directions,
                 std::span<const Tensor> flight = {});
+
+    /// Whether it is free in all directions: none of its bubbles sits on a plate.
+    bool flies() const { return directions_.size() == std::tuple_size_v<Rigid>; }
 
     /// Moments count about this point from now on; before, about the members' center.
     void turn_about(const Vec3& point) { center_ = point; }

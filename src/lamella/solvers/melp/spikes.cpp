@@ -13,7 +13,7 @@ namespace lamella::melp {
 /// Where films fold at a junction, cohesion is stronger than the particle's own film: without a limit single particles
 /// leave their film there and stretch it until it tears. What a particle stands out of the patch of its neighbors
 /// beyond a tenth of the spacing is taken back by and by, and so is the velocity with which it left; what that pushes
-/// and twists the cluster with goes back to all of it.
+/// and twists a cluster with that flies goes back to all of it.
 void MelpSolver::pull_back_spikes(double dt) {
     constexpr double kFree = 0.1;  // spacings
     constexpr double kShare = 0.3;
@@ -37,7 +37,7 @@ void MelpSolver::pull_back_spikes(double dt) {
                                          ? Flight(geometry_, coarse_, geometry_.area, gas_.size()).over_sphere()
                                          : std::vector<Tensor>{};
     for (const FreeCluster& cluster : free_clusters(coarse_, geometry_, gas_, rims_now_, maps))
-        cluster.remove_resultant(impulse, nothing, films_.liquid_volume);
+        if (cluster.flies()) cluster.remove_resultant(impulse, nothing, films_.liquid_volume);
     for_each_particle(coarse_.size(), [&](std::size_t i) {
         coarse_.velocity[i] += impulse[i] / films_.liquid_volume[i] * geometry_.normal[i];
     });
