@@ -110,7 +110,7 @@ TEST(Rest, FliesOnAtItsSpeed) {
 }
 
 /// What dampens shapes leaves flying and falling alone, also where steps are twenty times as long as it takes to act:
-/// with the flight of the last step in its place a joined pair fell with a twentieth of its weight.
+/// with the flight of the last step in its place a pair had 21 times its inertia.
 TEST(Rest, FallsThroughAirThatDampsShapesToo) {
     auto solver = solver_of(
         "[material]\ngravity = [0, 0, -9.81]\n[[bubble]]\ncenter = [0, 0, 0]\nradius = 0.03\n"

@@ -45,11 +45,13 @@ void MelpSolver::thin_out(const film::Event& event) {
         const double distance = norm(fine_.position[p] - fine_.position[*middle]);
         if (distance < kAround * event.radius) (distance < event.radius ? spot : around).push_back(p);
     }
-    if (spot.empty() || around.empty()) {
+    double there = 0.0;
+    for (const std::size_t p : around) there += fine_.liquid_volume[p];
+    if (spot.empty() || there == 0.0) {
         events_.push_back({time_, "skipped", event.center, "no film for a black spot"});
         return;
     }
-    double liquid = 0.0, heat = 0.0, there = 0.0;
+    double liquid = 0.0, heat = 0.0;
     Vec3 momentum;
     for (const std::size_t p : spot) {
         const double kept = std::min(options_.start.spot_thickness / fine_.thickness[p], 1.0);
@@ -60,7 +62,6 @@ void MelpSolver::thin_out(const film::Event& event) {
         fine_.liquid_volume[p] -= goes;
         fine_.thickness[p] *= kept;
     }
-    for (const std::size_t p : around) there += fine_.liquid_volume[p];
     const double grown = 1.0 + liquid / there;
     for (const std::size_t p : around) {
         fine_.velocity[p] = (fine_.velocity[p] + momentum / there) / grown;
