@@ -1,6 +1,7 @@
 #include "lamella/core/error.h"
 #include "lamella/core/parallel.h"
 #include "lamella/solvers/melp/melp_solver.h"
+#include "lamella/solvers/melp/pair_forces.h"
 #include "lamella/solvers/melp/start.h"
 #include "lamella/solvers/melp/surface.h"
 

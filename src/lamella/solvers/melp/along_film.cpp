@@ -73,7 +73,21 @@ SurfactantStep MelpSolver::push_along_film(double dt) {
         marangoni_[i] += geometry_.area[i] * pull[i];
         coarse_.velocity[i] += (dt / inertia[i]) * pull[i];
     }
+    carry_dry_along();
     return step;
+}
+
+/// Nothing pulls coarse particles that hardly a fine one reaches: along the film they go with what is around them.
+void MelpSolver::carry_dry_along() {
+    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+        if (films_.dry[i] == 0) continue;
+        marangoni_[i] = {};
+        const std::optional<Vec3> around = mean_over_wet(geometry_, films_, i, coarse_.velocity);
+        if (!around) continue;
+        const Vec3& n = geometry_.normal[i];
+        const Vec3 change = *around - coarse_.velocity[i];
+        coarse_.velocity[i] += change - dot(change, n) * n;
+    }
 }
 
 }  // namespace lamella::melp

@@ -66,6 +66,7 @@ private:
     double fastest_edge() const;
     double theta_of(double dt) const;
     SurfactantStep push_along_film(double dt);
+    void carry_dry_along();
     NormalStep push_along_normals(double dt);
     void filter_short_waves();
     void give_to_fine(double dt);

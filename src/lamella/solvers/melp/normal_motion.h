@@ -66,15 +66,4 @@ struct NormalStep {
 /// the matrix.
 NormalStep move_along_normals(const NormalProblem& problem);
 
-/// The tension of the particle's own film and that toward other regions, per interface tension, where gamma of film of
-/// other regions lies at the particle: 1 where two films coincide, more where three bubbles meet. Both follow from one
-/// energy, sigma a (2 - f): [method sheet 16.4; there gamma ended at 1, which is no energy's]
-///
-///   f = gamma + beta gamma (1 - gamma),  f' = (1 - beta) gamma^-6 beyond 1
-struct Cohesion {
-    double own;    ///< tau / sigma = 2 - f - gamma f'
-    double other;  ///< f'
-};
-Cohesion cohesion(double gamma, double beta);
-
 }  // namespace lamella::melp

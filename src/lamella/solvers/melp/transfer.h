@@ -66,7 +66,8 @@ public:
     ///   u = sum w u_E,  d = sum w (x_E - x_L),  C = B D^-1 with the moments B, D about u and d,  u_L = u - C d,
     ///
     /// so that to_coarse gives back the momentum that came; and lets their thickness follow the coarse one at `rate`:
-    ///   eta_L <- eta_L + rate (eta_E - seen eta_E).
+    ///   eta_L <- eta_L + rate (eta_E - seen eta_E),
+    /// at most thirty times eta_E and at least a thirtieth.
     /// Fine particles that no coarse one reaches keep what they have.
     void to_fine(const CoarseValues& coarse, double rate, FineParticles& fine) const;
 

@@ -4,6 +4,7 @@
 #include "lamella/solvers/melp/transfer.h"
 #include "lamella/solvers/melp/transfer_lanes.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lamella::melp {
@@ -124,6 +125,7 @@ Tensor affine_map(const Tensor& moment, const Tensor& spread, const Vec3& normal
 void Transfer::to_fine(const CoarseValues& from, double rate, FineParticles& fine) const {
     // Sums over the coarse particles, a row of lanes each: d (3), u (3), d d (6), u d (9), eta, seen eta.
     constexpr std::size_t kSums = 23;
+    constexpr double kMostDetail = 30.0;  // where flows are rough, thickness would add up to meters, or below nothing
     const double floor = 1e-4 * support_radius_ * support_radius_;
     const std::vector<Vec3> place = places_with_pictures(from.position);
     std::vector<Vec3> velocity(from.velocity.begin(), from.velocity.end());
@@ -190,7 +192,8 @@ void Transfer::to_fine(const CoarseValues& from, double rate, FineParticles& fin
                 }
                 fine.gradient[p] = affine_map(moment, spread, fine.normal[p], floor, d);
                 fine.velocity[p] = u - fine.gradient[p] * d;
-                fine.thickness[p] += rate * (mean(21) - mean(22));
+                const double film = mean(21), followed = fine.thickness[p] + rate * (film - mean(22));
+                fine.thickness[p] = std::clamp(followed, film / kMostDetail, kMostDetail * film);
             }
         }
     });

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "lamella/solvers/melp/normal_motion.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+// What pairs of coarse particles do to each other along the normals: tension, cohesion, and what keeps films apart.
+
+namespace lamella::melp {
+
+/// The tension of the particle's own film and that toward other regions, per interface tension, where gamma of film of
+/// other regions lies at the particle: 1 where two films coincide, more where three bubbles meet. Both follow from one
+/// energy, sigma a (2 - f): [method sheet 16.4; there gamma ended at 1, which is no energy's]
+///
+///   f = gamma + beta gamma (1 - gamma),  f' = (1 - beta) gamma^-6 beyond 1
+struct Cohesion {
+    double own;    ///< tau / sigma = 2 - f - gamma f'
+    double other;  ///< f'
+};
+Cohesion cohesion(double gamma, double beta);
+
+/// What keeps films that fly at each other from passing through, as a spring along the normals of a pair: it is
+/// strained where particle i stands deeper in the other bubble than films may. Gas alone presses joined films a quarter
+/// of a spacing into each other; those that have not joined keep a spacing of air between them.
+struct Spring {
+    double stiffness = 0.0;  ///< force along n_i over the velocity along n_i, or along n_j, times the time [N/m]
+    double force = 0.0;      ///< along n_i, into the own bubble [N]
+};
+
+/// The springs of all walls on one particle.
+Spring spring_of_walls(const NormalProblem& problem, std::size_t i);
+
+/// Strengths of the pairs: c_ij, of one region and of two. [N/m]
+struct Pairs {
+    std::vector<double> own;    ///< tau_i per particle
+    std::vector<double> same;   ///< per entry of neighbors.same
+    std::vector<double> other;  ///< per entry of neighbors.other
+    std::vector<double> image;  ///< per entry of images
+    std::vector<Spring> push;   ///< per entry of neighbors.other: what keeps films apart
+};
+
+Pairs pair_strengths(const NormalProblem& problem);
+
+/// Tension and cohesion along the normals, and what keeps films apart. [N]
+std::vector<double> pair_forces(const NormalProblem& problem, const Pairs& pairs);
+
+/// How these forces change with velocities along the normals: J_film of move_along_normals(). It reads the problem and
+/// the pairs, which have to outlive it.
+class FilmStiffness {
+public:
+    FilmStiffness(const NormalProblem& problem, const Pairs& pairs);
+
+    double diagonal(std::size_t i) const { return diagonal_[i]; }
+
+    /// (J_film v)_i
+    double apply(std::span<const double> v, std::size_t i) const;
+
+    /// What the motion of rims adds to (J_film v)_i.
+    double of_rims(std::size_t i) const;
+
+private:
+    const NormalProblem& p_;
+    const Pairs& pairs_;
+    std::vector<double> diagonal_;
+    std::vector<double> other_;  // per entry of neighbors.other
+};
+
+}  // namespace lamella::melp
