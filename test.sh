@@ -87,7 +87,8 @@ fi
 prepare_page "$install"
 
 say "Building in $build"
-configure release "$build" -DLAMELLA_NATIVE=ON -DLAMELLA_BUILD_APP=ON -DLAMELLA_BUILD_TESTS=ON
+configure release "$build" -DLAMELLA_NATIVE=ON -DLAMELLA_BUILD_APP=ON -DLAMELLA_BUILD_TESTS=ON \
+    -DLAMELLA_BUILD_BENCHMARKS=ON
 build_all "$build"
 
 say "Testing"

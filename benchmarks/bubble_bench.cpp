@@ -49,7 +49,8 @@ void contacts(benchmark::State& state) {
     ThreadLimit limit(1);
     auto solver = foam<D>(static_cast<int>(state.range(0)), Method::kRkc2);
     const System<D>& s = solver->system();
-    LocalDomain domain;
+    dist::Alone alone;
+    Domain domain(alone);
     Rates<D> rates;
     rates.resize(s.length());
     Stage<D> stage;
