@@ -1,10 +1,13 @@
 #include "lamella/solvers/melp/transfer.h"
 
+#include "lamella/solvers/melp/films.h"
 #include "lamella/solvers/melp/fine_order.h"
+#include "lamella/solvers/melp/surfactant.h"
 
 #include <gtest/gtest.h>
 
 #include "bubbles.h"
+#include <algorithm>
 
 namespace lamella::melp {
 namespace {
@@ -124,6 +127,55 @@ TEST(SortFineParticles, OnlyChangesTheirOrder) {
     const auto before = signature(fine);
     sort_fine_particles(fine, solver->spacing());
     EXPECT_EQ(signature(fine), before);
+}
+
+/// Coarse particles that no fine one reaches have the film of those around them: with none of their own the surfactant
+/// had no solution.
+TEST(Films, OfCoarseParticlesWithoutLiquidAreThoseAroundThem) {
+    const auto solver = stirred_bubble();
+    const CoarseParticles& coarse = solver->coarse();
+    const Transfer transfer(coarse, solver->geometry().normal, whirling(solver->fine()), 3.0 * solver->spacing());
+    Gathered gathered = transfer.to_coarse(coarse, whirling(solver->fine()));
+    std::size_t dry = 0;
+    for (std::size_t e = 0; e < coarse.size(); ++e) {
+        if (coarse.position[e][2] < 0.6 * kRadius) continue;  // wider than kernels reach
+        gathered.liquid_volume[e] = gathered.surfactant[e] = gathered.seen_volume[e] = gathered.heat[e] = 0.0;
+        gathered.momentum[e] = {};
+        ++dry;
+    }
+    const film::SurfactantLaw law{kTension, 1e-7};
+    const Films films = films_of(solver->geometry(), coarse, gathered, std::vector<EvenFilm>(1), law, {});
+    EXPECT_EQ(std::count(films.dry.begin(), films.dry.end(), 1), static_cast<std::ptrdiff_t>(dry));
+    EXPECT_GT(dry, 50U);
+    double least = 1.0;
+    for (std::size_t e = 0; e < coarse.size(); ++e)
+        if (films.dry[e] == 0) least = std::min(least, films.pressing[e]);
+    for (std::size_t e = 0; e < coarse.size(); ++e) {
+        EXPECT_GE(films.pressing[e], least);
+        EXPECT_LT(std::abs(dot(films.along[e], solver->geometry().normal[e])), 1e-12);
+        EXPECT_TRUE(films.dry[e] == 0 || norm(films.along[e]) > 0.0);
+    }
+    const SurfactantStep step = solve_surfactant(solver->geometry(), coarse.position, films, films.along, law,
+                                                 std::vector<double>(coarse.size(), kFilmMass), 1e-3, 1e-6, 0);
+    EXPECT_LT(step.solution.residual, 1e-6);
+    for (const double pressing : step.pressing) EXPECT_GT(pressing, 0.0);
+}
+
+/// The detail that fine particles have of the film's thickness stays near it, whatever their flow adds up to.
+TEST(Transfer, KeepsTheThicknessOfFineParticlesNearTheFilms) {
+    const auto solver = stirred_bubble();
+    const CoarseParticles& coarse = solver->coarse();
+    FineParticles fine = solver->fine();
+    fine.thickness[0] = 1.0;
+    fine.thickness[1] = -1e-6;
+    const Transfer transfer(coarse, solver->geometry().normal, fine, 3.0 * solver->spacing());
+    const std::vector<double> film = transfer.at_fine(solver->films().thickness);
+    const double other = fine.thickness[2];
+    transfer.to_fine({coarse.position, coarse.velocity, solver->films().thickness, solver->films().seen_thickness}, 0.0,
+                     fine);
+    EXPECT_NEAR(fine.thickness[0] / film[0], 30.0, 1e-9);
+    EXPECT_NEAR(fine.thickness[1] / film[1], 1.0 / 30.0, 1e-9);
+    EXPECT_EQ(fine.thickness[2], other);
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ void MelpSolver::carry_dry_along() {
     for (std::size_t i = 0; i < coarse_.size(); ++i) {
         if (films_.dry[i] == 0) continue;
         marangoni_[i] = {};
-        const std::optional<Vec3> around = mean_over_wet(geometry_, films_, i, coarse_.velocity);
+        const std::optional<Vec3> around = mean_around(geometry_, films_.dry, i, coarse_.velocity);
         if (!around) continue;
         const Vec3& n = geometry_.normal[i];
         const Vec3 change = *around - coarse_.velocity[i];

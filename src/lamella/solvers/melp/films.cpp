@@ -21,12 +21,20 @@ std::vector<double> region_areas(const Geometry& geometry, const CoarseParticles
 /// Where hardly a fine particle reaches there is no film to pull and to be pulled: the particle takes part in what its
 /// neighbors do. With nothing on it the slope of surfactant around it and borders of black film threw it, at 85 m/s.
 void fill_dry(const Geometry& geometry, Films& films) {
-    for (std::size_t i = 0; i < films.size(); ++i) {
-        if (films.dry[i] == 0) continue;
-        for (std::vector<double>* values : {&films.temperature, &films.pressing, &films.tension})
-            if (const auto mean = mean_over_wet(geometry, films, i, *values)) (*values)[i] = *mean;
-        if (const auto mean = mean_over_wet(geometry, films, i, films.along))
-            films.along[i] = *mean - dot(*mean, geometry.normal[i]) * geometry.normal[i];
+    std::vector<std::uint8_t> open = films.dry;  // 1: not filled yet
+    for (bool any = true; any;) {                // inward from the edges of dry places
+        any = false;
+        const std::vector<std::uint8_t> before = open;
+        for (std::size_t i = 0; i < films.size(); ++i) {
+            if (before[i] == 0) continue;
+            const std::optional<Vec3> along = mean_around(geometry, before, i, films.along);
+            if (!along) continue;
+            films.along[i] = *along - dot(*along, geometry.normal[i]) * geometry.normal[i];
+            for (std::vector<double>* values : {&films.temperature, &films.pressing, &films.tension})
+                (*values)[i] = *mean_around(geometry, before, i, *values);
+            open[i] = 0;
+            any = true;
+        }
     }
 }
 

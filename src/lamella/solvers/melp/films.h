@@ -43,18 +43,18 @@ Films films_of(const Geometry& geometry,
                const film::SurfactantLaw& law,
                const Heat& heat);
 
-/// The mean over the neighbors of the same film that are not dry, weighted by kernels; nothing where there are none.
+/// The mean over the neighbors of the same film that are not marked, weighted by kernels; nothing where there are none.
 template <class Value>
-std::optional<Value> mean_over_wet(const Geometry& geometry,
-                                   const Films& films,
-                                   std::size_t i,
-                                   const std::vector<Value>& values) {
+std::optional<Value> mean_around(const Geometry& geometry,
+                                 const std::vector<std::uint8_t>& marked,
+                                 std::size_t i,
+                                 const std::vector<Value>& values) {
     const Neighbors& same = geometry.neighbors.same;
     double weights = 0.0;
     Value sum{};
     for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
         const std::size_t j = same.index[k];
-        if (films.dry[j] != 0) continue;
+        if (marked[j] != 0) continue;
         const double weight = geometry.area[j] * same.weight[k];
         weights += weight;
         sum += weight * values[j];

@@ -51,16 +51,18 @@ void MelpSolver::thin_out(const film::Event& event) {
         events_.push_back({time_, "skipped", event.center, "no film for a black spot"});
         return;
     }
+    const std::vector<double> film = transfer_->at_fine(films_.thickness);
     double liquid = 0.0, heat = 0.0;
     Vec3 momentum;
     for (const std::size_t p : spot) {
-        const double kept = std::min(options_.start.spot_thickness / fine_.thickness[p], 1.0);
+        if (film[p] <= options_.start.spot_thickness) continue;  // thin enough, or a drop in the air
+        const double kept = options_.start.spot_thickness / film[p];
         const double goes = (1.0 - kept) * fine_.liquid_volume[p];
         liquid += goes;
         heat += goes * fine_.temperature[p];
         momentum += goes * fine_.velocity[p];
         fine_.liquid_volume[p] -= goes;
-        fine_.thickness[p] *= kept;
+        fine_.thickness[p] = options_.start.spot_thickness;
     }
     const double grown = 1.0 + liquid / there;
     for (const std::size_t p : around) {

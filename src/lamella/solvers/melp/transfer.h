@@ -76,6 +76,9 @@ public:
     /// brings. So all that coarse particles gain arrives, to rounding. Gradients of the velocity stay.
     void grow(const Growth& growth, FineParticles& fine) const;
 
+    /// At each fine particle the mean of values of the coarse ones around it; 0 at strays.
+    std::vector<double> at_fine(std::span<const double> values) const;
+
     /// Moves fine particles along the normals onto the patches, blended with the weights, and sets their normals.
     /// The patches may have moved on since the weights were found.
     void project(std::span<const Patch> patch, std::span<const Vec3> normal, FineParticles& fine) const;

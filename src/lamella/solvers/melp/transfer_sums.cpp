@@ -231,6 +231,25 @@ void Transfer::grow(const Growth& growth, FineParticles& fine) const {
     });
 }
 
+std::vector<double> Transfer::at_fine(std::span<const double> values) const {
+    std::vector<double> result(inverse_sum_.size(), 0.0);
+    parallel_blocks(chunks_.size(), 1, [&](std::size_t c, std::size_t) {
+        const Chunk& chunk = chunks_[c];
+        for (const Block& block : chunk.block) {
+            Lanes sum{};
+            for (std::size_t row = 0; row < block.rows; ++row) {
+                const float* weight = &chunk.weight[(block.weights + row) * kLanes];
+                std::size_t e = chunk.coarse[chunk.candidate[block.candidates + row]];
+                if (e >= values.size()) e = pictures_[e - values.size()].source;
+                for (std::size_t l = 0; l < kLanes; ++l) sum[l] += static_cast<double>(weight[l]) * values[e];
+            }
+            for (std::size_t l = 0; l < block.count; ++l)
+                result[block.first + l] = inverse_sum_[block.first + l] * sum[l];
+        }
+    });
+    return result;
+}
+
 void Transfer::project(std::span<const Patch> patch, std::span<const Vec3> normal, FineParticles& fine) const {
     parallel_blocks(chunks_.size(), 1, [&](std::size_t c, std::size_t) {
         const Chunk& chunk = chunks_[c];
