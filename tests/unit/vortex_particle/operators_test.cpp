@@ -1,12 +1,11 @@
 #include "lamella/solvers/vortex_particle/operators.h"
 
-#include "surfaces.h"
-
 #include "lamella/core/error.h"
 #include "lamella/solvers/vortex_particle/flow.h"
 
 #include <gtest/gtest.h>
 
+#include "surfaces.h"
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -67,9 +66,11 @@ TEST(FilmOperators, LetNothingOutOfTheFilm) {
     for (const auto& [name, s, walls] : surfaces_of_every_kind()) {
         const std::vector<Vec3> u = random_velocity(s);
         const std::vector<double> d = divergence(s, u), o = curl(s, u);
-        EXPECT_NEAR(std::accumulate(d.begin(), d.end(), 0.0), 0.0, kRounding * static_cast<double>(s.vertices())) << name;
+        EXPECT_NEAR(std::accumulate(d.begin(), d.end(), 0.0), 0.0, kRounding * static_cast<double>(s.vertices()))
+            << name;
         if (walls) continue;
-        EXPECT_NEAR(std::accumulate(o.begin(), o.end(), 0.0), 0.0, kRounding * static_cast<double>(s.vertices())) << name;
+        EXPECT_NEAR(std::accumulate(o.begin(), o.end(), 0.0), 0.0, kRounding * static_cast<double>(s.vertices()))
+            << name;
     }
 }
 
@@ -106,7 +107,8 @@ TEST(FlowSolver, FindsTheCirculationAndOutflowThatItWasGiven) {
     for (const auto& [name, s, walls] : surfaces_of_every_kind()) {
         const FlowSolver solver(s);
         const std::vector<double> p = random_values(6, s.vertices());
-        std::vector<double> omega = curl(s, rotated_gradient(s, p)), outflow = divergence(s, gradient(s, random_values(7, s.vertices())));
+        std::vector<double> omega = curl(s, rotated_gradient(s, p)),
+                            outflow = divergence(s, gradient(s, random_values(7, s.vertices())));
         const std::vector<double> hole(s.loops.size(), 0.0);
         const std::vector<Vec3> swirl = rotated_gradient(s, solver.stream_function(s, omega, hole));
         const std::vector<Vec3> away = gradient(s, solver.potential(s, outflow));

@@ -1,12 +1,11 @@
 #include "lamella/solvers/vortex_particle/particles.h"
 
-#include "surfaces.h"
-
 #include "lamella/solvers/vortex_particle/trace.h"
 #include "lamella/solvers/vortex_particle/transfer.h"
 
 #include <gtest/gtest.h>
 
+#include "surfaces.h"
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -118,7 +117,8 @@ TEST(Trace, IsOfFourthOrderInARigidRotation) {
     for (const int steps : {20, 40}) {
         Particles particles = spread_particles(s, 1, 2);
         std::vector<Vec3> start;
-        for (std::size_t p = 0; p < particles.size(); ++p) start.push_back(s.point(particles.triangle[p], particles.place[p]));
+        for (std::size_t p = 0; p < particles.size(); ++p)
+            start.push_back(s.point(particles.triangle[p], particles.place[p]));
         for (int k = 0; k < steps; ++k) trace(s, velocity, 2.0 * 3.14159265358979323846 / steps, particles);
         double worst = 0.0;
         for (std::size_t p = 0; p < particles.size(); ++p)
@@ -134,7 +134,8 @@ TEST(Trace, TurnsVelocitiesAlongWithTheFilm) {
     std::vector<Vec3> velocity(s.vertices());
     for (std::size_t v = 0; v < s.vertices(); ++v) velocity[v] = cross({{0, 0, 1}}, s.position[v]);
     Particles particles = spread_particles(s, 1, 2);
-    for (std::size_t p = 0; p < particles.size(); ++p) particles.velocity[p] = cross(s.normal[particles.triangle[p]], {{1, 2, 3}});
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        particles.velocity[p] = cross(s.normal[particles.triangle[p]], {{1, 2, 3}});
     const std::vector<Vec3> before = particles.velocity;
     for (int k = 0; k < 10; ++k) trace(s, velocity, 0.1, particles);
     for (std::size_t p = 0; p < particles.size(); ++p) {
