@@ -17,7 +17,7 @@ using namespace lamella::linalg;
 /// The Poisson equation of a film as of flat triangles of equal sides; the first vertex has value 0.
 /// @param sides  into so many parts each edge of an icosahedron is divided: 10 sides^2 + 2 vertices
 SymmetricMatrix poisson(int sides) {
-    const mesh::FoamMesh sphere = mesh::spheres({{Vec3{}, 1.0}}, 1.208 / sides);
+    const mesh::FoamMesh sphere = mesh::spheres({{Vec3{}, 1.0}}, 1.206 / sides);
     Groups triangles;
     for (const mesh::Face& face : sphere.faces) {
         for (const mesh::VertexId v : face.vertices)
