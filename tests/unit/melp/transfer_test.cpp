@@ -178,5 +178,19 @@ TEST(Transfer, KeepsTheThicknessOfFineParticlesNearTheFilms) {
     EXPECT_EQ(fine.thickness[2], other);
 }
 
+/// Steps of a whirl are straight: the thickness that fine particles have goes by how that stretches the film. By the
+/// divergence alone it grew at omega^2 dt / 2.
+TEST(FineParticles, KeepTheThicknessOfAFilmThatTurns) {
+    const auto solver = films("[[film]]\nshape = \"disk\"\nradius = 0.05\n", 0.004,
+                              "steps_per_period = 0.0\nlargest_step = 5e-3\ncfl = 2.0\nair_drag = 1e-2\n"
+                              "wind_spin = [0.0, 0.0, 40.0]\nwind_radius = 0.015\n");
+    advance_to(*solver, 0.6);
+    EXPECT_GT(scalar(*solver, "energy_kinetic"), 1e-9);
+    for (std::size_t p = 0; p < solver->fine().size(); ++p) {
+        EXPECT_GT(solver->fine().thickness[p], 0.8 * 5e-7);
+        EXPECT_LT(solver->fine().thickness[p], 1.25 * 5e-7);
+    }
+}
+
 }  // namespace
 }  // namespace lamella::melp

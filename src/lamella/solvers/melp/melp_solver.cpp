@@ -238,15 +238,31 @@ void MelpSolver::move_coarse(double dt, const NormalStep& step) {
     pull_back_spikes(dt);
 }
 
+namespace {
+
+/// By how much the film around a particle stretches when all of it goes straight on for dt: det(1 + dt grad u) along
+/// the film, and not exp(dt div u). Straight paths leave a whirl and widen it by (omega dt)^2 in a step; with the
+/// divergence alone, what flows in for that made the particle thicker, at omega^2 dt / 2.
+double stretch(const Tensor& slope, double dt) {
+    constexpr double kLeast = 0.1;  // of rough flows at edges, that a step does not turn inside out
+    double trace = 0.0, square = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        trace += slope[k][k];
+        for (std::size_t m = 0; m < 3; ++m) square += slope[k][m] * slope[m][k];
+    }
+    return std::max(1.0 + dt * trace + 0.5 * dt * dt * (trace * trace - square), kLeast);
+}
+
+}  // namespace
+
 /// Fine particles go with the flow, onto the film where it is now, and stretch with it.
 void MelpSolver::move_fine(double dt) {
     parallel_for(fine_.size(), [&](std::size_t p) {
-        const Tensor& slope = fine_.gradient[p];
         fine_.position[p] += dt * fine_.velocity[p];
         if (transfer_->stray(p))  // a drop in the air
             fine_.velocity[p] += dt * input_.films->material.gravity;
         else
-            fine_.thickness[p] *= std::exp(-dt * (slope[0][0] + slope[1][1] + slope[2][2]));
+            fine_.thickness[p] /= stretch(fine_.gradient[p], dt);
     });
     transfer_->project(geometry_.patch, geometry_.normal, fine_);
     heat_.warm(dt, fine_);
