@@ -81,7 +81,7 @@ film-drainage|melp/film-drainage-small|10||An upright film in a frame drains
 fingers-of-particles|melp/rayleigh-taylor-small|14||Thick film above thin film, made of particles, sinks in fingers
 deforming-rectangle|melp/deforming-rectangle-small|24||The upper side of a frame swings to the front, and the film with it
 black-spots|melp/black-spots-small|12||Black spots rise in a film whose frame swings out
-stirred-film|melp/stirred-film-small|10|--camera -90,58,1.33|A whirl of air has stirred a film
+stirred-film|melp/stirred-film-small|10|--camera -90,58,1.15|A whirl of air has stirred a film
 heated-bubble|melp/heated-bubble-small|16|--field temperature --camera 20,-10|A warm spot beside a bubble sends its film up
 half-bubble|melp/half-bubble-small|10||Half a bubble on a plate, in the wind
 ball-on-a-film|melp/ball-on-film-small|5||A ball has fallen on a film, which catches it
