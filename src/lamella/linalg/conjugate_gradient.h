@@ -1,5 +1,7 @@
 #pragma once
 
+#include "lamella/core/parallel.h"
+
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -27,13 +29,11 @@ IterativeSolution preconditioned_conjugate_gradient(Operator&& apply,
                                                     int most_iterations) {
     const std::size_t n = b.size();
     const auto dot = [n](const std::vector<double>& u, const std::vector<double>& v) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < n; ++i) sum += u[i] * v[i];
-        return sum;
+        return parallel_sum(n, [&](std::size_t i) { return u[i] * v[i]; });
     };
     std::vector<double> residual(n), direction, image(n), scaled;
     apply(x, image);
-    for (std::size_t i = 0; i < n; ++i) residual[i] = b[i] - image[i];
+    parallel_for(n, [&](std::size_t i) { residual[i] = b[i] - image[i]; });
     const double size = std::sqrt(dot(b, b));
     IterativeSolution done{0, size > 0.0 ? std::sqrt(dot(residual, residual)) / size : 0.0};
     if (size == 0.0) {
@@ -45,21 +45,22 @@ IterativeSolution preconditioned_conjugate_gradient(Operator&& apply,
     double product = dot(residual, scaled);
     while (done.iterations < most_iterations && done.residual > tolerance) {
         apply(direction, image);
-        const double curvature = dot(direction, image);
         // A direction that the operator hardly sees leads far away for nothing: no better solution is to be had.
         constexpr double kBlind = 1e-10;
+        const double curvature = dot(direction, image);
         if (!(curvature > kBlind * std::sqrt(dot(direction, direction) * dot(image, image)))) break;
         const double step = product / curvature;
-        for (std::size_t i = 0; i < n; ++i) {
+        const double squares = parallel_sum(n, [&](std::size_t i) {
             x[i] += step * direction[i];
             residual[i] -= step * image[i];
-        }
+            return residual[i] * residual[i];
+        });
         precondition(residual, scaled);
         const double next = dot(residual, scaled);
-        for (std::size_t i = 0; i < n; ++i) direction[i] = scaled[i] + (next / product) * direction[i];
+        parallel_for(n, [&](std::size_t i) { direction[i] = scaled[i] + (next / product) * direction[i]; });
         product = next;
         ++done.iterations;
-        done.residual = std::sqrt(dot(residual, residual)) / size;
+        done.residual = std::sqrt(squares) / size;
     }
     return done;
 }

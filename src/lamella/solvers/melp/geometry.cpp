@@ -22,22 +22,15 @@ Patch fit_patch(std::span<const Vec3> position,
                 const Images& images,
                 std::size_t i) {
     Patch patch{position[i], frame_of(frame_normal)};
-    constexpr std::size_t kTerms = 6;
+    constexpr std::size_t kTerms = Patch::kTerms;
     if (neighbors.end(i) - neighbors.begin(i) + images.end(i) - images.begin(i) + 1 < kTerms) return patch;
-    const double unit = neighbors.kernel.support_radius;  // coordinates of size 1 keep the matrix well scaled
-    std::array<double, kTerms * kTerms> matrix{};
+    const double unit = neighbors.kernel.support_radius;
+    FitMatrix matrix = empty_fit();
     std::array<double, kTerms> right{};
-    matrix[0] = 1.0;  // the particle itself
     const auto add = [&](const Vec3& place) {
-        const Vec3 d = (place - position[i]) / unit;
-        const double u = dot(patch.frame.e1, d), v = dot(patch.frame.e2, d), z = dot(patch.frame.normal, d);
-        const double weight = std::max(1.0 - squared_norm(d), 0.0);
-        const std::array<double, kTerms> term{1.0, u, v, u * u, u * v, v * v};
-        for (std::size_t p = 0; p < kTerms; ++p) {
-            const double weighted = weight * term[p];
-            for (std::size_t q = 0; q <= p; ++q) matrix[p * kTerms + q] += weighted * term[q];
-            right[p] += weighted * z;
-        }
+        const FitPoint point = point_of(patch, place, unit);
+        add_to_fit(point, matrix);
+        for (std::size_t p = 0; p < kTerms; ++p) right[p] += point.weight * point.term[p] * point.z;
     };
     for (std::size_t k = neighbors.begin(i); k < neighbors.end(i); ++k) add(position[neighbors.index[k]]);
     for (std::size_t k = images.begin(i); k < images.end(i); ++k) add(images.place[k]);

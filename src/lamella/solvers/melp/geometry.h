@@ -7,7 +7,9 @@
 #include "lamella/solvers/melp/tensor.h"
 #include "lamella/solvers/melp/voronoi.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -24,9 +26,11 @@ Frame frame_of(const Vec3& normal);
 ///
 ///   z(u, v) = c0 + c1 u + c2 v + c3 u^2 + c4 u v + c5 v^2,   (u, v, z) = (e1, e2, normal) . (x - origin)
 struct Patch {
+    static constexpr std::size_t kTerms = 6;
+
     Vec3 origin;  ///< the particle [m]
     Frame frame;
-    std::array<double, 6> c{};  ///< [m], [-], [1/m]
+    std::array<double, kTerms> c{};  ///< [m], [-], [1/m]
 
     double height(double u, double v) const { return c[0] + u * (c[1] + c[3] * u + c[4] * v) + v * (c[2] + c[5] * v); }
     /// How far `x` stands above the patch, along the frame's normal [m].
@@ -35,6 +39,29 @@ struct Patch {
         return dot(frame.normal, d) - height(dot(frame.e1, d), dot(frame.e2, d));
     }
 };
+
+/// What a place counts for in the fit of a patch, coordinates over `unit`, the kernel's reach: they are of size 1 and
+/// keep the matrix well scaled.
+struct FitPoint {
+    double weight;
+    std::array<double, Patch::kTerms> term;  ///< 1, u, v, u^2, u v, v^2
+    double z;
+};
+inline FitPoint point_of(const Patch& patch, const Vec3& place, double unit) {
+    const Vec3 d = (place - patch.origin) / unit;
+    const double u = dot(patch.frame.e1, d), v = dot(patch.frame.e2, d);
+    return {std::max(1.0 - squared_norm(d), 0.0), {1.0, u, v, u * u, u * v, v * v}, dot(patch.frame.normal, d)};
+}
+
+/// Of the normal equations of a fit, the lower triangle row by row. It starts with the particle itself, at the origin.
+using FitMatrix = std::array<double, Patch::kTerms * Patch::kTerms>;
+inline FitMatrix empty_fit() { return {1.0}; }
+inline void add_to_fit(const FitPoint& point, FitMatrix& matrix) {
+    for (std::size_t p = 0; p < Patch::kTerms; ++p) {
+        const double weighted = point.weight * point.term[p];
+        for (std::size_t q = 0; q <= p; ++q) matrix[p * Patch::kTerms + q] += weighted * point.term[q];
+    }
+}
 
 /// The least squares fit of a patch to a particle, its neighbors of the same region and what it sees beyond a rim,
 /// weighted with the kernel. Where they are too few for a quadratic (less than six, or on a line) the patch is flat.

@@ -235,7 +235,6 @@ void MelpSolver::move_coarse(double dt, const NormalStep& step) {
         coarse_.velocity[i] += slope[i] * (along + shift[i] - liquid);
     });
     coarse_.frame_normal = steady_normals(geometry_, coarse_.frame_normal);
-    pull_back_spikes(dt);
 }
 
 namespace {

@@ -71,7 +71,6 @@ private:
     void filter_short_waves();
     void give_to_fine(double dt);
     void move_coarse(double dt, const NormalStep& step);
-    void pull_back_spikes(double dt);
     void move_fine(double dt);
     void pull_edges(double dt);
     void vent(double dt);

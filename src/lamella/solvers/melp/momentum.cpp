@@ -41,7 +41,7 @@ std::vector<std::ptrdiff_t> MelpSolver::flying_clusters() const {
     return flying;
 }
 
-/// The filter, spikes pulled back, coarse particles that slip through the film, those added and taken change the
+/// The filter, coarse particles that slip through the film, those added and taken change the
 /// momentum of what flies by a few millionths of m c. The uniform velocity along the normals that has it is added.
 void MelpSolver::give_back_to_liquid(const std::vector<Vec3>& momentum) {
     if (fine_.size() == 0) return;

@@ -25,6 +25,22 @@ struct Neighbors {
     std::size_t end(std::size_t i) const { return start[i + 1]; }
 };
 
+/// sum_k factor_k value_j over the entries of particle i, in four sums: a single one would wait for each addition.
+template <class Factor>
+double sum_of_products(const Neighbors& list,
+                       const std::vector<Factor>& factor,
+                       std::span<const double> value,
+                       std::size_t i) {
+    constexpr std::size_t kSums = 4;
+    std::array<double, kSums> sum{};
+    std::size_t k = list.begin(i);
+    const std::size_t end = list.end(i);
+    for (; k + kSums <= end; k += kSums)
+        for (std::size_t s = 0; s < kSums; ++s) sum[s] += double{factor[k + s]} * value[list.index[k + s]];
+    for (; k < end; ++k) sum[0] += double{factor[k]} * value[list.index[k]];
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
 /// Two regions, the smaller one first.
 using RegionPair = std::array<std::int32_t, 2>;
 

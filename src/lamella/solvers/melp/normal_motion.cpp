@@ -1,6 +1,7 @@
 #include "lamella/solvers/melp/normal_motion.h"
 
 #include "lamella/solvers/melp/flight.h"
+#include "lamella/solvers/melp/fold_springs.h"
 #include "lamella/solvers/melp/free_clusters.h"
 #include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/pair_forces.h"
@@ -106,13 +107,14 @@ private:
 /// M v0 + dt F0: what velocities and forces at the start of the step give. [kg m/s]
 std::vector<double> given_momentum(const NormalProblem& p,
                                    const Pairs& pairs,
+                                   const FoldSprings& folds,
                                    const GasStiffness& gas,
                                    std::span<const Spring> walls,
                                    const std::vector<FreeCluster>& free) {
     const std::size_t count = p.coarse.size();
     std::vector<double> force = pair_forces(p, pairs);
     for_each_particle(count, [&](std::size_t i) {
-        force[i] += p.gas[region_of(p.coarse, i)].gauge_pressure(p.outside_pressure) * gas.area(i);
+        force[i] += folds.force(i) + p.gas[region_of(p.coarse, i)].gauge_pressure(p.outside_pressure) * gas.area(i);
     });
     std::vector<Vec3> beside(p.internal.begin(), p.internal.end());
     for (std::size_t i = 0; p.floating && i < count; ++i) beside[i] += p.external[i];
@@ -152,21 +154,23 @@ NormalStep move_along_normals(const NormalProblem& p) {
     const std::vector<FreeCluster> free = free_clusters(p.coarse, p.geometry, p.gas, p.rims, maps);
     const Inertia inertia(p, flight, walls);
     const FilmStiffness films(p, pairs);
+    const FoldSprings folds(p, pairs);
     const GasStiffness gas(p);
-    const std::vector<double> given = given_momentum(p, pairs, gas, walls, free);
+    const std::vector<double> given = given_momentum(p, pairs, folds, gas, walls, free);
 
     const double implicit = p.theta * p.theta * p.dt * p.dt, mixed = p.theta * (1.0 - p.theta) * p.dt * p.dt;
     std::vector<double> right(count), scale(count);
     for_each_particle(count, [&](std::size_t i) {
         right[i] = given[i] + mixed * films.apply(p.velocity, i) + p.theta * p.dt * p.dt * films.of_rims(i);
-        scale[i] = 1.0 / (inertia.diagonal(i) - implicit * films.diagonal(i));
+        scale[i] = 1.0 / (inertia.diagonal(i) - implicit * films.diagonal(i) + p.dt * p.dt * folds.diagonal(i));
     });
     const auto apply = [&](const std::vector<double>& v, std::vector<double>& y) {
         inertia.apply(v, y);
-        const std::vector<double> grown = gas.growth(v);
+        const std::vector<double> grown = gas.growth(v), strain = folds.strain(v);
         for_each_particle(count, [&](std::size_t i) {
             const std::size_t r = region_of(p.coarse, i);
-            y[i] += gas.stiffness(r) * grown[r] * gas.area(i) - implicit * films.apply(v, i);
+            y[i] += p.dt * p.dt * folds.product(strain, i) + gas.stiffness(r) * grown[r] * gas.area(i) -
+                    implicit * films.apply(v, i);
         });
     };
     NormalStep step;

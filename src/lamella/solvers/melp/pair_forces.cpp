@@ -63,6 +63,7 @@ Pairs pair_strengths(const NormalProblem& p) {
     const Images& images = p.geometry.images;
     const std::vector<double>& a = p.geometry.area;
     Pairs pairs;
+    pairs.gamma.resize(a.size());
     pairs.own.resize(a.size());
     pairs.same.resize(same.index.size());
     pairs.other.resize(other.index.size());
@@ -73,6 +74,7 @@ Pairs pair_strengths(const NormalProblem& p) {
         double gamma = 0.0;
         for (std::size_t k = other.begin(i); k < other.end(i); ++k)
             gamma += (p.joined.empty() ? 1.0 : p.joined[k]) * a[other.index[k]] * other.weight[k];
+        pairs.gamma[i] = gamma;
         const Cohesion c = cohesion(gamma, p.junction_correction);
         pairs.own[i] = p.interface_tension[i] * c.own;
         toward[i] = p.interface_tension[i] * c.other;
@@ -114,7 +116,11 @@ std::vector<double> pair_forces(const NormalProblem& p, const Pairs& pairs) {
 }
 
 FilmStiffness::FilmStiffness(const NormalProblem& p, const Pairs& pairs)
-    : p_(p), pairs_(pairs), diagonal_(p.coarse.size()), other_(pairs.other.size()) {
+    : p_(p),
+      pairs_(pairs),
+      diagonal_(p.coarse.size()),
+      same_(pairs.same.begin(), pairs.same.end()),
+      other_(pairs.other.size()) {
     const Neighbors& same = p.geometry.neighbors.same;
     const Neighbors& other = p.geometry.neighbors.other;
     const std::vector<Vec3>& n = p.geometry.normal;
@@ -123,10 +129,10 @@ FilmStiffness::FilmStiffness(const NormalProblem& p, const Pairs& pairs)
         const bool free = other.index.empty();
         double sum = 0.0;
         for (std::size_t k = same.begin(i); k < same.end(i); ++k)
-            sum -= pairs.same[k] * (free ? dot(n[i], n[same.index[k]]) : 1.0);
+            sum -= double{same_[k]} * (free ? dot(n[i], n[same.index[k]]) : 1.0);
         for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
             sum -= pairs.other[k] + pairs.push[k].stiffness;
-            other_[k] = pairs.other[k] * dot(n[i], n[other.index[k]]) - pairs.push[k].stiffness;
+            other_[k] = static_cast<float>(pairs.other[k] * dot(n[i], n[other.index[k]]) - pairs.push[k].stiffness);
         }
         const Images& images = p.geometry.images;
         for (std::size_t k = images.begin(i); k < images.end(i); ++k)
@@ -136,11 +142,8 @@ FilmStiffness::FilmStiffness(const NormalProblem& p, const Pairs& pairs)
 }
 
 double FilmStiffness::apply(std::span<const double> v, std::size_t i) const {
-    const Neighbors& same = p_.geometry.neighbors.same;
-    const Neighbors& other = p_.geometry.neighbors.other;
-    double sum = diagonal_[i] * v[i];
-    for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum += pairs_.same[k] * v[same.index[k]];
-    for (std::size_t k = other.begin(i); k < other.end(i); ++k) sum += other_[k] * v[other.index[k]];
+    double sum = diagonal_[i] * v[i] + sum_of_products(p_.geometry.neighbors.same, same_, v, i) +
+                 sum_of_products(p_.geometry.neighbors.other, other_, v, i);
     const Images& images = p_.geometry.images;
     for (std::size_t k = images.begin(i); k < images.end(i); ++k)
         sum += pairs_.image[k] * images.mirrors[images.mirror[k]].sign * images.follow[k] * v[images.index[k]];

@@ -34,6 +34,7 @@ Spring spring_of_walls(const NormalProblem& problem, std::size_t i);
 
 /// Strengths of the pairs: c_ij, of one region and of two. [N/m]
 struct Pairs {
+    std::vector<double> gamma;  ///< film of joined regions that lies at each particle
     std::vector<double> own;    ///< tau_i per particle
     std::vector<double> same;   ///< per entry of neighbors.same
     std::vector<double> other;  ///< per entry of neighbors.other
@@ -64,7 +65,8 @@ private:
     const NormalProblem& p_;
     const Pairs& pairs_;
     std::vector<double> diagonal_;
-    std::vector<double> other_;  // per entry of neighbors.other
+    // Per entry of the lists. Every iteration of the solver reads them: in single precision, alike in both rows.
+    std::vector<float> same_, other_;
 };
 
 }  // namespace lamella::melp

@@ -45,9 +45,7 @@ std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, do
     const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
         y.resize(count);
         for_each_particle(count, [&](std::size_t i) {
-            double sum = 0.0;
-            for (std::size_t k = same.begin(i); k < same.end(i); ++k) sum += pair[k] * x[same.index[k]];
-            y[i] = diagonal[i] * x[i] - reach * g.area[i] * sum;
+            y[i] = diagonal[i] * x[i] - reach * g.area[i] * sum_of_products(same, pair, x, i);
         });
     };
     std::vector<double> phi(count, 0.0);
