@@ -31,6 +31,7 @@ TEST(DoubleBubble, SettlesFromFirstContact) {
         EXPECT_NEAR(angle, 120.0, 1.2);
         EXPECT_NEAR(area / 0.0593723807167931, 1.0, 0.005);
         EXPECT_NEAR(area / ideal, 1.0, 1e-3);
+        EXPECT_LT(scalar(*solver, "max_velocity"), 0.005);
     }
 }
 
@@ -61,8 +62,11 @@ TEST(QuadrupleBubble, SettlesFromFirstContact) {
                                    0.005);
     advance_to(*solver, 0.03);
     for (int a = 0; a < 4; ++a)
-        for (int b = 0; b < a; ++b)
-            EXPECT_NEAR(angle_between(cap_of(*solver, a), cap_of(*solver, b)), 120.0, 2.4) << a << " and " << b;
+        for (int b = 0; b < a; ++b) {
+            const double angle = angle_between(cap_of(*solver, a), cap_of(*solver, b));
+            std::printf("caps %d and %d: %.2f degrees\n", a, b, angle);
+            EXPECT_NEAR(angle, 120.0, 2.4);
+        }
     EXPECT_LT(scalar(*solver, "density_spread"), 0.25);
     EXPECT_EQ(scalar(*solver, "flipped_normals"), 0.0);
 }
@@ -84,19 +88,17 @@ TEST(UnequalBubbles, HaveThePartitionThatTheirPressuresAskFor) {
                                       {0.05, 0.03, 9.97, 0.0025},
                                       {0.05, 0.035, 6.44, 0.0025},
                                       {0.05, 0.04, 3.77, 0.0025},
-                                      {0.05, 0.045, 1.68, 0.0025}}};
+                                      {0.05, 0.045, 1.679, 0.002}}};
     for (const Case& c : cases) {
         auto solver = settling_cluster(
             {{{{-1.004 * c.large, 0.0, 0.0}}, c.large}, {{{1.004 * c.small, 0.0, 0.0}}, c.small}}, c.edge);
-        advance_to(*solver, c.curvature < 3.0 ? 0.08 : 0.04);  // flat partitions come to rest slowly
+        advance_to(*solver, 0.04);
         const Cap large = cap_of(*solver, 0), small = cap_of(*solver, 1);
         const double curvature = partition_curvature(*solver, 0, 1);
         std::printf("curvature %.3f of %.3f, of the caps %.3f; angle %.2f\n", curvature, c.curvature,
                     1.0 / small.radius - 1.0 / large.radius, angle_between(large, small));
         std::fflush(stdout);
-        // The difference of the caps' curvatures, each known to a quarter of a percent at best: the two flattest
-        // partitions may miss the aim of 1.5 %.
-        EXPECT_NEAR(curvature, c.curvature, std::max(0.015 * c.curvature, 0.003 / c.small));
+        EXPECT_NEAR(curvature, c.curvature, 0.015 * c.curvature);
         EXPECT_NEAR(angle_between(large, small), 120.0, 1.2);
         for (const auto& [cap, r] : {std::pair{large, 0}, {small, 1}})
             EXPECT_NEAR(solver->gas()[r].balanced * cap.radius / (4.0 * 0.0725), 1.0, 0.01);

@@ -124,8 +124,8 @@ TEST(Rest, FallsThroughAirThatDampsShapesToo) {
     EXPECT_NEAR(falling / exact, 1.0, 0.006);  // of implicit steps
 }
 
-/// Forces between films are taken along their normals only, and spikes at folds are pulled back: what that costs is
-/// given to the pair as a whole. (It had lost nine tenths of its speed at once before.)
+/// Forces between films are taken along their normals only: what that costs is given to the pair as a whole. (It had
+/// lost nine tenths of its speed at once before.)
 TEST(Rest, KeepsTheMomentumOfUnequalBubblesThatCollideAndJoin) {
     for (const char* ratio : {"0", "4"}) {
         auto solver = solver_of(std::string("[material]\nsurface_tension = 0.025\n"
