@@ -55,6 +55,9 @@ PoolResult run_pool(const PoolSettings& settings) {
             if (result.signal == 0 && settings.more()) worker = start(settings.arguments);
         }
         workers.erase(std::remove(workers.begin(), workers.end(), 0), workers.end());
+        // A worker that was killed as it took a task over keeps others from it for a moment: the last may have left.
+        if (workers.empty() && result.signal == 0 && result.exit_code == 0 && settings.more())
+            workers.push_back(start(settings.arguments));
     }
     return result;
 }

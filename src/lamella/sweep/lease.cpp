@@ -79,19 +79,23 @@ bool is_alive(const Holder& holder, double age) {
     return age < kStaleAfter;
 }
 
-/// Writes a new file; false when there is one already.
+/// Writes a new file; false when there is one already. It gets its name when it is whole: of a process that is killed
+/// meanwhile nothing is left that looks like a lease.
 bool create(const fs::path& file, const std::string& text) {
-    const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (fd < 0) {
-        if (errno == EEXIST) return false;
-        throw IoError(fmt::format("{}: {}", file.string(), std::strerror(errno)));
-    }
-    const bool written = ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    static std::atomic<unsigned> serial{0};
+    const std::string beside =
+        (file.parent_path() / fmt::format(".{}.{}.{}.{}", file.filename().string(), host_name(), ::getpid(), ++serial))
+            .string();
+    const int fd = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const bool made = fd >= 0 && ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+                      ::link(beside.c_str(), file.c_str()) == 0;
     const int error = errno;
-    ::close(fd);
-    if (written) return true;
-    ::unlink(file.c_str());
-    throw IoError(fmt::format("{}: {}", file.string(), std::strerror(error)));
+    if (fd >= 0) {
+        ::close(fd);
+        ::unlink(beside.c_str());
+    }
+    if (!made && error != EEXIST) throw IoError(fmt::format("{}: {}", file.string(), std::strerror(error)));
+    return made;
 }
 
 /// Puts one's own lease in the place of a stale one. It is written beside it first, under a name that only one can
@@ -99,7 +103,8 @@ bool create(const fs::path& file, const std::string& text) {
 bool take_over(const fs::path& file, const std::string& left, const std::string& own) {
     const fs::path next = file.string() + ".next";
     if (!create(next, own)) {
-        if (age(next).value_or(0.0) >= kStaleAfter)
+        const std::string other = contents(next);
+        if (const auto since = age(next); since && !is_alive(holder_of(other), *since) && contents(next) == other)
             ::unlink(next.c_str());  // whoever wrote it died before it was moved
         return false;
     }

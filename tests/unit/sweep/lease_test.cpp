@@ -1,7 +1,7 @@
 #include "lamella/sweep/lease.h"
 
-#include <gtest/gtest.h>
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -67,6 +67,24 @@ TEST_F(LeaseTest, OfAProcessThatDiedHereIsFreeAtOnce) {
     ASSERT_EQ(::gethostname(host.data(), host.size() - 1), 0);
     std::ofstream(file_) << host.data() << " 2147483646 0\n";  // no process has that number
     EXPECT_EQ(lease_state(file_), LeaseState::kStale);
+}
+
+/// A worker of a sweep that was killed at that moment held its task up for a minute, and the others left.
+TEST_F(LeaseTest, IsFreeAgainWhereAProcessDiedHereAsItTookItOver) {
+    std::array<char, 256> host{};
+    ASSERT_EQ(::gethostname(host.data(), host.size() - 1), 0);
+    std::ofstream(file_) << host.data() << " 2147483646 0 1\n";
+    std::ofstream(file_.string() + ".next") << host.data() << " 2147483645 1 1\n";
+    EXPECT_FALSE(Lease::take(file_));  // what was left goes
+    EXPECT_TRUE(Lease::take(file_));
+}
+
+TEST_F(LeaseTest, LeavesNothingBesideItself) {
+    {
+        const auto lease = Lease::take(file_);
+        ASSERT_TRUE(lease);
+    }
+    for (const auto& entry : fs::directory_iterator(folder_)) EXPECT_EQ(entry.path().filename(), ".clock");
 }
 
 TEST_F(LeaseTest, ThatKilledTenProcessesIsWornOut) {
