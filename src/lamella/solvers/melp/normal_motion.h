@@ -62,8 +62,8 @@ struct NormalStep {
 /// meet a third at 120 degrees. Internal forces, `internal` along the film counted, neither push nor twist a free
 /// cluster as a whole: what discretization leaves is removed.
 ///
-/// Films that face each other too deep push each other back, and walls push films back, as stiff springs: both are in
-/// the matrix.
+/// Films that face each other too deep push each other back, walls push films back, and particles at folds are held to
+/// their film (FoldSprings), as stiff springs: all are in the matrix, and theta is 1 where bubbles touch.
 NormalStep move_along_normals(const NormalProblem& problem);
 
 }  // namespace lamella::melp
