@@ -73,17 +73,18 @@ Value parallel_reduce(std::size_t count,
     return total;
 }
 
-/// Sum of term(i) over [0, count), added in fixed blocks: the same bits on any number of threads.
+/// Sum of term(i) over [0, count), numbers or vectors, added in fixed blocks: the same bits on any number of threads.
 template <class Term>
-double parallel_sum(std::size_t count, Term&& term) {
+auto parallel_sum(std::size_t count, Term&& term) {
+    using Value = std::remove_cvref_t<decltype(term(std::size_t{}))>;
     return parallel_reduce(
-        count, 0.0,
+        count, Value{},
         [&](std::size_t begin, std::size_t end) {
-            double sum = 0.0;
+            Value sum{};
             for (std::size_t i = begin; i < end; ++i) sum += term(i);
             return sum;
         },
-        [](double a, double b) { return a + b; });
+        [](const Value& a, const Value& b) { return a + b; });
 }
 
 /// Largest term(i) over [0, count), or `floor` if that is larger.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lamella/core/parallel.h"
+#include "lamella/core/vec.h"
 
 #include <cmath>
 #include <cstddef>
@@ -47,9 +48,11 @@ IterativeSolution preconditioned_conjugate_gradient(Operator&& apply,
         apply(direction, image);
         // A direction that the operator hardly sees leads far away for nothing: no better solution is to be had.
         constexpr double kBlind = 1e-10;
-        const double curvature = dot(direction, image);
-        if (!(curvature > kBlind * std::sqrt(dot(direction, direction) * dot(image, image)))) break;
-        const double step = product / curvature;
+        const Vec3 seen = parallel_sum(n, [&](std::size_t i) {
+            return Vec3{{direction[i] * image[i], direction[i] * direction[i], image[i] * image[i]}};
+        });
+        if (!(seen[0] > kBlind * std::sqrt(seen[1] * seen[2]))) break;
+        const double step = product / seen[0];
         const double squares = parallel_sum(n, [&](std::size_t i) {
             x[i] += step * direction[i];
             residual[i] -= step * image[i];
@@ -74,8 +77,12 @@ IterativeSolution conjugate_gradient(Operator&& apply,
                                      double tolerance,
                                      int most_iterations) {
     const auto precondition = [&scale](const std::vector<double>& u, std::vector<double>& v) {
-        v = u;
-        for (std::size_t i = 0; i < scale.size(); ++i) v[i] *= scale[i];
+        if (scale.empty()) {
+            v = u;
+            return;
+        }
+        v.resize(u.size());
+        parallel_for(u.size(), [&](std::size_t i) { v[i] = scale[i] * u[i]; });
     };
     return preconditioned_conjugate_gradient(apply, precondition, b, x, tolerance, most_iterations);
 }

@@ -1,5 +1,6 @@
 #include "lamella/core/parallel.h"
 #include "lamella/core/parallel_sort.h"
+#include "lamella/core/vec.h"
 
 #include <gtest/gtest.h>
 
@@ -179,6 +180,9 @@ TEST(ParallelSum, AddsInTheOrderOfTheIndices) {
     for (std::size_t i = 0; i < kParallelBlock; ++i) expected += uneven_term(i);
     EXPECT_EQ(parallel_sum(kParallelBlock, uneven_term), expected);
     EXPECT_EQ(parallel_sum(0, uneven_term), 0.0);
+    const Vec2 both = parallel_sum(3 * kParallelBlock, [](std::size_t i) { return Vec2{{uneven_term(i), 1.0}}; });
+    EXPECT_EQ(both[0], parallel_sum(3 * kParallelBlock, uneven_term));
+    EXPECT_EQ(both[1], 3.0 * kParallelBlock);
 }
 
 TEST(ParallelReduce, CombinesInOrder) {

@@ -14,6 +14,16 @@ TEST(SolvePositive, SolvesASystemWithAKnownAnswer) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(b[k], x[k], 1e-15);
 }
 
+TEST(SolvePositive, SolvesForSeveralRightSidesWithOneFactor) {
+    std::array<double, 4> a{4.0, 0.0, 2.0, 5.0};
+    ASSERT_TRUE(factor_positive<2>(a));
+    for (const std::array<double, 2>& x : {std::array{1.0, 0.0}, std::array{-3.0, 2.0}}) {
+        std::array<double, 2> b{4.0 * x[0] + 2.0 * x[1], 2.0 * x[0] + 5.0 * x[1]};
+        solve_factored<2>(a, b);
+        for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(b[k], x[k], 1e-15);
+    }
+}
+
 TEST(SolvePositive, RefusesWhatIsNotPositiveDefinite) {
     std::array<double, 2> b{1.0, 1.0};
     std::array<double, 4> singular{1.0, 0.0, 1.0, 1.0};
