@@ -4,77 +4,21 @@
 
 #include <gtest/gtest.h>
 
-#include "bubbles.h"
+#include "joined.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <vector>
 
 namespace lamella::melp {
 namespace {
 
-std::unique_ptr<MelpSolver> joined_until(double time) {
-    auto solver = started(
-        "[material]\nsurface_tension = 0.025\nthickness = 5e-7\n"
-        "[[bubble]]\ncenter = [-0.01005, 0, 0]\nradius = 0.01\n"
-        "[[bubble]]\ncenter = [0.0093, 0, 0]\nradius = 0.0092\n"
-        "[resolution]\nedge_length = 0.0015\n"
-        "[melp]\nfine_ratio = 0\ndamping = 500.0\nsteps_per_period = 60.0\n");
-    advance_to(*solver, time);
-    return solver;
+/// What `use` makes of the springs between the particles of a pair as they are now.
+template <class Use>
+void springs(const Joined& pair, Use&& use) {
+    pair.problem(
+        [&](const NormalProblem& problem) { use(FoldSprings(problem, pair_strengths(problem)), problem.geometry); });
 }
-
-/// Two joined bubbles, whose particles the tests move.
-class Joined {
-public:
-    Joined() : solver_(joined_until(0.008)) {
-        coarse = solver_->coarse();
-        std::size_t deepest = 0;
-        const Neighbors& other = solver_->geometry().neighbors.other;
-        for (std::size_t i = 0; i < coarse.size(); ++i)
-            if (other.end(i) - other.begin(i) > other.end(deepest) - other.begin(deepest)) deepest = i;
-        on_partition = deepest;
-    }
-
-    const MelpSolver& solver() const { return *solver_; }
-
-    /// What `use` makes of the springs between the particles as they are now.
-    template <class Use>
-    void springs(Use&& use) const {
-        const Geometry geometry = geometry_of(coarse, solver_->geometry().neighbors.same.kernel.support_radius);
-        const std::vector<double> ones(coarse.size(), 1.0), tension(coarse.size(), kTension);
-        const std::vector<Vec3> nothing(coarse.size());
-        const NormalProblem problem{.coarse = coarse,
-                                    .geometry = geometry,
-                                    .gas = solver_->gas(),
-                                    .rims = {},
-                                    .walls = {},
-                                    .joined = {},
-                                    .outside_pressure = 1e5,
-                                    .mass = ones,
-                                    .interface_tension = tension,
-                                    .velocity = ones,
-                                    .internal = nothing,
-                                    .external = nothing,
-                                    .even = true,
-                                    .floating = false,
-                                    .junction_correction = 0.17,
-                                    .damping = 0.0,
-                                    .shape_damping = 0.0,
-                                    .theta = 1.0,
-                                    .dt = 1e-4,
-                                    .tolerance = 1e-6};
-        const FoldSprings folds(problem, pair_strengths(problem));
-        use(folds, geometry);
-    }
-
-    CoarseParticles coarse;
-    std::size_t on_partition;  ///< a particle that sees much of the other bubble
-
-private:
-    std::unique_ptr<MelpSolver> solver_;
-};
 
 TEST(FoldSprings, PullASingleParticleBackAndItsNeighborsTheOtherWay) {
     Joined pair;
@@ -87,15 +31,15 @@ TEST(FoldSprings, PullASingleParticleBackAndItsNeighborsTheOtherWay) {
     };
     double before = 0.0;
     Vec3 all_before;
-    pair.springs([&](const FoldSprings& folds, const Geometry& geometry) {
+    springs(pair, [&](const FoldSprings& folds, const Geometry& geometry) {
         before = folds.force(i);
         all_before = resultant(folds, geometry);
     });
     pair.coarse.position[i] += height * pair.solver().geometry().normal[i];
-    pair.springs([&](const FoldSprings& folds, const Geometry& geometry) {
+    springs(pair, [&](const FoldSprings& folds, const Geometry& geometry) {
         const Neighbors& same = geometry.neighbors.same;
         const double reach = same.kernel.support_radius, own = folds.force(i) - before;
-        const double k = 144.0 * 2.0 * kTension * geometry.area[i] / (reach * reach);
+        const double k = FoldSprings::kStiffness * 2.0 * kTension * geometry.area[i] / (reach * reach);
         EXPECT_LT(own, -0.3 * k * height);
         EXPECT_GT(own, -1.5 * k * height);
         EXPECT_LT(norm(resultant(folds, geometry) - all_before), 0.05 * std::abs(own));
@@ -110,13 +54,18 @@ TEST(FoldSprings, HaveASymmetricPositiveMatrixAndNoneWhereNoOtherBubbleIs) {
         u[i] = std::sin(1.0 + 12.9898 * static_cast<double>(i));
         v[i] = std::sin(2.0 + 78.233 * static_cast<double>(i));
     }
-    pair.springs([&](const FoldSprings& folds, const Geometry& geometry) {
-        const std::vector<double> of_u = folds.strain(u), of_v = folds.strain(v);
+    springs(pair, [&](const FoldSprings& folds, const Geometry& geometry) {
+        std::vector<double> of_u, of_v;
+        folds.strain(u, of_u);
+        folds.strain(v, of_v);
+        const auto product = [&](const std::vector<double>& strain, std::size_t i) {
+            return folds.on_own(i) * strain[i] + sum_of_products(geometry.neighbors.same, folds.on_others(), strain, i);
+        };
         double uv = 0.0, vu = 0.0, uu = 0.0, alone = 0.0;
         for (std::size_t i = 0; i < count; ++i) {
-            uv += u[i] * folds.product(of_v, i);
-            vu += v[i] * folds.product(of_u, i);
-            uu += u[i] * folds.product(of_u, i);
+            uv += u[i] * product(of_v, i);
+            vu += v[i] * product(of_u, i);
+            uu += u[i] * product(of_u, i);
             const Neighbors& other = geometry.neighbors.other;
             if (other.begin(i) == other.end(i)) alone = std::max(alone, std::abs(of_u[i]));
         }

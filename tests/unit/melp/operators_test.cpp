@@ -208,6 +208,32 @@ TEST(Neighbors, AreTheSameSeenFromBothSides) {
             }
 }
 
+TEST(Neighbors, AddProductsOverRowsOfAnyLength) {
+    const CoarseParticles coarse = sphere(300, 1.0, 0.3);
+    const Neighbors same = find_neighbors(coarse.position, coarse.frame_normal, coarse.region, 0.45).same;
+    std::vector<float> a, b;
+    for (std::size_t k = 0; k < same.index.size(); ++k) {
+        a.push_back(std::sin(static_cast<float>(k)));
+        b.push_back(std::cos(static_cast<float>(k)));
+    }
+    std::vector<double> v, w;
+    for (std::size_t i = 0; i < same.size(); ++i) {
+        v.push_back(std::sin(3.0 + static_cast<double>(i)));
+        w.push_back(std::cos(5.0 + static_cast<double>(i)));
+    }
+    for (std::size_t i = 0; i < same.size(); ++i) {
+        double av = 0.0, bw = 0.0;
+        for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
+            av += double{a[k]} * v[same.index[k]];
+            bw += double{b[k]} * w[same.index[k]];
+        }
+        const auto both = sums_of_products<std::vector<float>>(same, {&a, &b}, {v, w}, i);
+        EXPECT_NEAR(both[0], av, 1e-13);
+        EXPECT_NEAR(both[1], bw, 1e-13);
+        EXPECT_EQ(sum_of_products(same, a, v, i), both[0]);
+    }
+}
+
 TEST(Neighbors, DoNotSeeTheOtherSideOfAPinchedFilm) {
     CoarseParticles coarse = plate(10, frame_of(Vec3{{0, 0, 1}}));
     const std::size_t layer = coarse.size();

@@ -1,6 +1,7 @@
 // What pulls films along themselves: weight, the air that drags, surfactant, warmth, borders of black film.
 
 #include "lamella/solvers/melp/black_film.h"
+#include "lamella/solvers/melp/loops.h"
 #include "lamella/solvers/melp/melp_solver.h"
 #include "lamella/solvers/melp/operators.h"
 
@@ -50,14 +51,14 @@ std::vector<Vec3> MelpSolver::other_pull() const {
 SurfactantStep MelpSolver::push_along_film(double dt) {
     const std::size_t count = coarse_.size();
     std::vector<double> inertia(count);  // of film and drag, per area
-    for (std::size_t i = 0; i < count; ++i) {
+    for_each_particle(count, [&](std::size_t i) {
         const Vec3& n = geometry_.normal[i];
         const double film = liquid_density() * films_.thickness[i], drag = dt * options_.air_drag;
         inertia[i] = film + drag;
         Vec3 u = film * (films_.along[i] + dt * weight_at(i)) + drag * wind_at(coarse_.position[i]);
         u -= dot(u, n) * n;
         coarse_.velocity[i] = u / inertia[i] + dot(coarse_.velocity[i], n) * n;
-    }
+    });
     pull_edges(dt);
     marangoni_.assign(count, {});
     if (fine_.size() == 0) return {};  // constant tension

@@ -1,6 +1,7 @@
 #include "lamella/solvers/melp/films.h"
 
 #include "lamella/solvers/melp/flight.h"
+#include "lamella/solvers/melp/loops.h"
 
 #include <algorithm>
 
@@ -66,7 +67,7 @@ Films films_of(const Geometry& geometry,
     films.pressing.resize(count);
     films.tension.resize(count);
     films.along.resize(count);
-    for (std::size_t e = 0; e < count; ++e) {
+    for_each_particle(count, [&](std::size_t e) {
         const auto r = static_cast<std::size_t>(coarse.region[e]);
         const double a = geometry.area[e];
         const bool evenly = even[r].liquid_volume > 0.0;
@@ -88,7 +89,7 @@ Films films_of(const Geometry& geometry,
         else if (volume > 0.0)
             u = gathered.momentum[e] / volume;
         films.along[e] = u - dot(u, geometry.normal[e]) * geometry.normal[e];
-    }
+    });
     fill_dry(geometry, films);
     return films;
 }

@@ -24,6 +24,8 @@ public:
     /// @param along_normal  u . n per coarse particle [m/s]
     /// @returns             U per region; zero where too few normals are left [m/s]
     std::vector<Vec3> of(std::span<const double> along_normal) const;
+    /// The same of one region from its sum m (u . n) n.
+    Vec3 of_momentum(std::size_t region, const Vec3& momentum) const { return inverse_[region] * momentum; }
 
     /// How much a region flies when forces along its normals push it, over what a sphere does: mass / 3 times the
     /// inverse of sum m n n^T, to be multiplied with the sum of the forces. Films without fine particles fly as their

@@ -13,22 +13,29 @@ namespace lamella::melp {
 /// spring between each particle that lies on other bubbles' film and the patch through its neighbors, which stands
 /// above it by
 ///
-///   h_i = sum_j w_ij (x_j - x_i) . n_i,   energy  k_i h_i^2 / 2,   k_i = 144 film tension a_i / support radius^2
+///   h_i = sum_j w_ij (x_j - x_i) . n_i,   energy  k_i h_i^2 / 2,   k_i = 144 film tension a_i / reach^2
 ///
-/// with weights w that the fit gives. Springs push and twist no film as a whole, and shapes that a quadratic describes
-/// do not strain them. Without them single particles leave their film and stretch it until it tears.
+/// with weights w that the fit gives and the kernels' support radius as reach. Springs push and twist no film as a
+/// whole, and shapes that a quadratic describes do not strain them. Without them single particles leave their film and
+/// stretch it until it tears.
 class FoldSprings {
 public:
+    /// A quarter of this takes two thirds of the solver's iterations, and crowds of 40 bubbles stay more even with it;
+    /// but caps at nine spacings to a radius meet at 122 degrees, and partitions are up to 2 % off.
+    static constexpr double kStiffness = 144.0;
+
     /// It reads the problem, which has to outlive it.
     FoldSprings(const NormalProblem& problem, const Pairs& pairs);
 
     /// Of all springs on particle i, along its normal [N].
-    double force(std::size_t i) const { return -product(force_, i); }
+    double force(std::size_t i) const;
 
-    /// K v in two passes, K = sum_i k_i grad h_i grad h_i^T with gradients along the normals [N/m]: k_i grad h_i . v
-    /// per particle, and (K v)_i from that.
-    std::vector<double> strain(std::span<const double> v) const;
-    double product(std::span<const double> strain, std::size_t i) const;
+    /// K v comes in two passes, K = sum_i k_i g_i g_i^T with g_i = grad h_i along the normals [N/m]: the strain per
+    /// particle, k_i g_i . v, empty where no bubbles touch, and from that (K v)_i = on_own_i strain_i + sum_j
+    /// on_others_k strain_j over the entries k of particle i, on its neighbors j.
+    void strain(std::span<const double> v, std::vector<double>& strain) const;
+    double on_own(std::size_t i) const { return own_[i]; }
+    const RawVector<float>& on_others() const { return from_; }
     /// K_ii [N/m]
     double diagonal(std::size_t i) const;
 
@@ -38,8 +45,8 @@ private:
     std::vector<double> force_;      // k_i h_i per particle [N]
     std::vector<double> own_;        // d h_i / d x_i, along the normal
     // Per entry of neighbors.same. Every iteration of the solver reads them: in single precision, alike in both rows.
-    std::vector<float> into_;  // d h_i / d x_j
-    std::vector<float> from_;  // d h_j / d x_i
+    RawVector<float> into_;  // d h_i / d x_j
+    RawVector<float> from_;  // d h_j / d x_i
 };
 
 }  // namespace lamella::melp

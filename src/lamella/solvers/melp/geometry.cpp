@@ -20,7 +20,8 @@ Patch fit_patch(std::span<const Vec3> position,
                 const Vec3& frame_normal,
                 const Neighbors& neighbors,
                 const Images& images,
-                std::size_t i) {
+                std::size_t i,
+                FitRow* row) {
     Patch patch{position[i], frame_of(frame_normal)};
     constexpr std::size_t kTerms = Patch::kTerms;
     if (neighbors.end(i) - neighbors.begin(i) + images.end(i) - images.begin(i) + 1 < kTerms) return patch;
@@ -28,14 +29,19 @@ Patch fit_patch(std::span<const Vec3> position,
     FitMatrix matrix = empty_fit();
     std::array<double, kTerms> right{};
     const auto add = [&](const Vec3& place) {
-        const FitPoint point = point_of(patch, place, unit);
+        const FitPoint point = point_of(patch, place, 1.0 / unit);
         add_to_fit(point, matrix);
         for (std::size_t p = 0; p < kTerms; ++p) right[p] += point.weight * point.term[p] * point.z;
     };
     for (std::size_t k = neighbors.begin(i); k < neighbors.end(i); ++k) add(position[neighbors.index[k]]);
     for (std::size_t k = images.begin(i); k < images.end(i); ++k) add(images.place[k]);
-    if (linalg::solve_positive<kTerms>(matrix, right))
-        patch.c = {right[0] * unit, right[1], right[2], right[3] / unit, right[4] / unit, right[5] / unit};
+    if (!linalg::factor_positive<kTerms>(matrix)) return patch;
+    linalg::solve_factored<kTerms>(matrix, right);
+    patch.c = {right[0] * unit, right[1], right[2], right[3] / unit, right[4] / unit, right[5] / unit};
+    if (row != nullptr) {
+        *row = {1.0};
+        linalg::solve_factored<kTerms>(matrix, *row);
+    }
     return patch;
 }
 
@@ -95,6 +101,8 @@ Geometry geometry_of(const CoarseParticles& coarse, double support_radius, std::
     g.neighbors = find_neighbors(coarse.position, coarse.frame_normal, coarse.region, support_radius);
     g.images = find_images(rims, coarse.position, coarse.frame_normal, coarse.region, support_radius);
     const Neighbors& same = g.neighbors.same;
+    const Neighbors& other = g.neighbors.other;
+    const auto meets_others = [&](std::size_t i) { return other.begin(i) != other.end(i); };
     const Images nothing;
     const std::size_t count = coarse.size();
     g.patch.resize(count);
@@ -103,10 +111,12 @@ Geometry geometry_of(const CoarseParticles& coarse, double support_radius, std::
     g.area.resize(count);
     g.gradient_map.resize(count);
     g.star.resize(count);
+    if (!other.index.empty()) g.fit_row.resize(count);
     constexpr std::size_t kBlock = 256;
     parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            g.patch[i] = fit_patch(coarse.position, coarse.frame_normal[i], same, g.images, i);
+            g.patch[i] = fit_patch(coarse.position, coarse.frame_normal[i], same, g.images, i,
+                                   meets_others(i) ? &g.fit_row[i] : nullptr);
             const PatchShape shape = shape_of(g.patch[i]);
             g.normal[i] = shape.normal;
             g.curvature[i] = shape.curvature;
@@ -120,8 +130,7 @@ Geometry geometry_of(const CoarseParticles& coarse, double support_radius, std::
     parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
         VoronoiCell cell;
         for (std::size_t i = first; i < last; ++i) {
-            if (g.neighbors.other.begin(i) != g.neighbors.other.end(i))
-                g.star[i] = star_of(coarse.position, g.normal, same, i, cell);
+            if (meets_others(i)) g.star[i] = star_of(coarse.position, g.normal, same, i, cell);
             g.gradient_map[i] = gradient_map(coarse.position, g.area, g.normal[i], same, nothing, i);
             if (!g.images.empty())
                 g.mirrored_map[i] = gradient_map(coarse.position, g.area, g.normal[i], same, g.images, i);

@@ -40,15 +40,15 @@ struct Patch {
     }
 };
 
-/// What a place counts for in the fit of a patch, coordinates over `unit`, the kernel's reach: they are of size 1 and
-/// keep the matrix well scaled.
+/// What a place counts for in the fit of a patch, coordinates over the kernel's reach, 1 / `per_unit`: they are of size
+/// 1 and keep the matrix well scaled.
 struct FitPoint {
     double weight;
     std::array<double, Patch::kTerms> term;  ///< 1, u, v, u^2, u v, v^2
     double z;
 };
-inline FitPoint point_of(const Patch& patch, const Vec3& place, double unit) {
-    const Vec3 d = (place - patch.origin) / unit;
+inline FitPoint point_of(const Patch& patch, const Vec3& place, double per_unit) {
+    const Vec3 d = per_unit * (place - patch.origin);
     const double u = dot(patch.frame.e1, d), v = dot(patch.frame.e2, d);
     return {std::max(1.0 - squared_norm(d), 0.0), {1.0, u, v, u * u, u * v, v * v}, dot(patch.frame.normal, d)};
 }
@@ -63,13 +63,19 @@ inline void add_to_fit(const FitPoint& point, FitMatrix& matrix) {
     }
 }
 
+/// The first row of the inverse of a fit's matrix: it makes the height of a patch at its origin a sum over places,
+/// c0 = sum weight (row . term) z unit.
+using FitRow = std::array<double, Patch::kTerms>;
+
 /// The least squares fit of a patch to a particle, its neighbors of the same region and what it sees beyond a rim,
 /// weighted with the kernel. Where they are too few for a quadratic (less than six, or on a line) the patch is flat.
+/// @param row  of the fit, if asked for; zeros where the patch is flat
 Patch fit_patch(std::span<const Vec3> position,
                 const Vec3& frame_normal,
                 const Neighbors& neighbors,
                 const Images& images,
-                std::size_t i);
+                std::size_t i,
+                FitRow* row = nullptr);
 
 /// Normal and curvature of a patch at its origin. A sphere whose normal points outward has curvature -2 / R: this is
 /// the K of [method sheet 1], the Laplacian of the height.
@@ -84,6 +90,7 @@ struct Geometry {
     NeighborLists neighbors;
     Images images;  ///< what lies beyond rims
     std::vector<Patch> patch;
+    std::vector<FitRow> fit_row;  ///< of particles near films of other regions, zeros elsewhere; empty: no such films
     std::vector<Vec3> normal;
     std::vector<double> curvature;     ///< measured, for reports; no force comes from it [1/m]
     std::vector<double> area;          ///< 1 / sum W, the particle itself counted [m^2]

@@ -158,14 +158,14 @@ NormalStep MelpSolver::push_along_normals(double dt) {
     const std::size_t count = coarse_.size();
     std::vector<double> before(count);
     std::vector<Vec3> external(count);
-    for (std::size_t i = 0; i < count; ++i) {
+    for_each_particle(count, [&](std::size_t i) {
         const Vec3& n = geometry_.normal[i];
         before[i] = dot(coarse_.velocity[i], n);
         external[i] = (liquid_density() * films_.liquid_volume[i]) * input_.films->material.gravity;
         const Vec3 wind = wind_at(coarse_.position[i]);
         if (dot(n, wind) < 0.0)  // the side that the wind blows on
             external[i] += (options_.air_drag * geometry_.area[i]) * (wind - coarse_.velocity[i]);
-    }
+    });
     const std::vector<double> mass = masses();
     NormalStep step = move_along_normals({.coarse = coarse_,
                                           .geometry = geometry_,
@@ -187,7 +187,8 @@ NormalStep MelpSolver::push_along_normals(double dt) {
                                           .theta = theta_of(dt),
                                           .dt = dt,
                                           .tolerance = options_.solver_tolerance});
-    for (std::size_t i = 0; i < count; ++i) coarse_.velocity[i] += (step.velocity[i] - before[i]) * geometry_.normal[i];
+    for_each_particle(
+        count, [&](std::size_t i) { coarse_.velocity[i] += (step.velocity[i] - before[i]) * geometry_.normal[i]; });
     for (std::size_t r = 0; r < gas_.size(); ++r) {
         if (!gas_[r].closed) continue;
         gas_[r].volume += step.swept[r];
@@ -202,10 +203,10 @@ void MelpSolver::filter_short_waves() {
     if (options_.grid_filter == 0.0) return;
     const std::vector<Vec3> rough =
         roughness(geometry_, roughness(geometry_, coarse_.velocity, Beyond::kVelocity), Beyond::kDifference);
-    for (std::size_t i = 0; i < coarse_.size(); ++i) {
+    for_each_particle(rough.size(), [&](std::size_t i) {
         const Vec3& n = geometry_.normal[i];
         coarse_.velocity[i] -= (options_.grid_filter * dot(rough[i], n)) * n;
-    }
+    });
 }
 
 void MelpSolver::give_to_fine(double dt) {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include "lamella/core/raw_vector.h"
+#include "lamella/core/simd.h"
 #include "lamella/core/vec.h"
 #include "lamella/solvers/melp/kernel.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -14,9 +17,9 @@ namespace lamella::melp {
 /// rows with the same bits. Built once per step, used by every stage.
 struct Neighbors {
     std::vector<std::uint32_t> start;  ///< size + 1
-    std::vector<std::uint32_t> index;
-    std::vector<double> weight;     ///< W of the pair [1/m^2]
-    std::vector<double> laplacian;  ///< FilmKernel::laplacian_weight of the pair [1/m^4]
+    RawVector<std::uint32_t> index;
+    RawVector<double> weight;     ///< W of the pair [1/m^2]
+    RawVector<double> laplacian;  ///< FilmKernel::laplacian_weight of the pair [1/m^4]
     FilmKernel kernel{};
 
     std::size_t size() const { return start.empty() ? 0 : start.size() - 1; }
@@ -25,20 +28,30 @@ struct Neighbors {
     std::size_t end(std::size_t i) const { return start[i + 1]; }
 };
 
-/// sum_k factor_k value_j over the entries of particle i, in four sums: a single one would wait for each addition.
-template <class Factor>
-double sum_of_products(const Neighbors& list,
-                       const std::vector<Factor>& factor,
-                       std::span<const double> value,
-                       std::size_t i) {
-    constexpr std::size_t kSums = 4;
-    std::array<double, kSums> sum{};
-    std::size_t k = list.begin(i);
-    const std::size_t end = list.end(i);
-    for (; k + kSums <= end; k += kSums)
-        for (std::size_t s = 0; s < kSums; ++s) sum[s] += double{factor[k + s]} * value[list.index[k + s]];
-    for (; k < end; ++k) sum[0] += double{factor[k]} * value[list.index[k]];
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+/// sum_k factor_k value_j over the entries of particle i, eight at a time.
+template <class Factors>
+double sum_of_products(const Neighbors& list, const Factors& factor, std::span<const double> value, std::size_t i) {
+    Simd sum{};
+    for (std::size_t k = list.begin(i), end = list.end(i); k < end; k += kLanes) {
+        const std::size_t count = std::min(end - k, kLanes);
+        sum += load_some(&factor[k], count) * gather_some(value.data(), &list.index[k], count);
+    }
+    return sum_of_lanes(sum);
+}
+
+/// Two such sums in one pass over the indices.
+template <class Factors>
+std::array<double, 2> sums_of_products(const Neighbors& list,
+                                       const std::array<const Factors*, 2>& factor,
+                                       const std::array<std::span<const double>, 2>& value,
+                                       std::size_t i) {
+    Simd first{}, second{};
+    for (std::size_t k = list.begin(i), end = list.end(i); k < end; k += kLanes) {
+        const std::size_t count = std::min(end - k, kLanes);
+        first += load_some(&(*factor[0])[k], count) * gather_some(value[0].data(), &list.index[k], count);
+        second += load_some(&(*factor[1])[k], count) * gather_some(value[1].data(), &list.index[k], count);
+    }
+    return {sum_of_lanes(first), sum_of_lanes(second)};
 }
 
 /// Two regions, the smaller one first.

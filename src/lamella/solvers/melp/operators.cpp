@@ -56,7 +56,7 @@ std::vector<Vec3> gradient(const Geometry& g, std::span<const Vec3> x, std::span
     auto result = sum_over_neighbors<Vec3>(g, [&](Vec3& sum, std::size_t i, std::size_t j, std::size_t k) {
         sum += (q[j] - q[i]) * weighted_gradient(g, x, i, j, k);
     });
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] = g.gradient_map[i] * result[i];
+    for_each_particle(result.size(), [&](std::size_t i) { result[i] = g.gradient_map[i] * result[i]; });
     return result;
 }
 
@@ -71,8 +71,9 @@ std::vector<Tensor> gradient(const Geometry& g, std::span<const Vec3> x, std::sp
         for (std::size_t c = 0; c < 3; ++c) result[i][c] += more[c] * along;
     });
     const std::vector<Tensor>& map = g.images.empty() ? g.gradient_map : g.mirrored_map;
-    for (std::size_t i = 0; i < result.size(); ++i)
+    for_each_particle(result.size(), [&](std::size_t i) {
         for (Vec3& row : result[i]) row = map[i] * row;
+    });
     return result;
 }
 

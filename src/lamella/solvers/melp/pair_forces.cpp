@@ -45,7 +45,7 @@ Spring spring_between(const NormalProblem& p, std::size_t i, std::size_t k) {
 
 Spring spring_of_walls(const NormalProblem& p, std::size_t i) {
     const double reach = p.geometry.neighbors.same.kernel.support_radius;
-    Spring all;
+    Spring all{};
     for (const film::Wall& wall : p.walls) {
         const double depth = dot(wall.point - p.coarse.position[i], wall.normal);
         if (depth <= 0.0) continue;
@@ -113,49 +113,6 @@ std::vector<double> pair_forces(const NormalProblem& p, const Pairs& pairs) {
         force[i] = dot(pull, g.normal[i]) + push;
     });
     return force;
-}
-
-FilmStiffness::FilmStiffness(const NormalProblem& p, const Pairs& pairs)
-    : p_(p),
-      pairs_(pairs),
-      diagonal_(p.coarse.size()),
-      same_(pairs.same.begin(), pairs.same.end()),
-      other_(pairs.other.size()) {
-    const Neighbors& same = p.geometry.neighbors.same;
-    const Neighbors& other = p.geometry.neighbors.other;
-    const std::vector<Vec3>& n = p.geometry.normal;
-    for_each_particle(diagonal_.size(), [&](std::size_t i) {
-        // At a junction films fold: full stiffness there, none of it forgiven for moving as a whole.
-        const bool free = other.index.empty();
-        double sum = 0.0;
-        for (std::size_t k = same.begin(i); k < same.end(i); ++k)
-            sum -= double{same_[k]} * (free ? dot(n[i], n[same.index[k]]) : 1.0);
-        for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
-            sum -= pairs.other[k] + pairs.push[k].stiffness;
-            other_[k] = static_cast<float>(pairs.other[k] * dot(n[i], n[other.index[k]]) - pairs.push[k].stiffness);
-        }
-        const Images& images = p.geometry.images;
-        for (std::size_t k = images.begin(i); k < images.end(i); ++k)
-            sum -= pairs.image[k] * dot(n[i], images.normal[k]);
-        diagonal_[i] = sum;
-    });
-}
-
-double FilmStiffness::apply(std::span<const double> v, std::size_t i) const {
-    double sum = diagonal_[i] * v[i] + sum_of_products(p_.geometry.neighbors.same, same_, v, i) +
-                 sum_of_products(p_.geometry.neighbors.other, other_, v, i);
-    const Images& images = p_.geometry.images;
-    for (std::size_t k = images.begin(i); k < images.end(i); ++k)
-        sum += pairs_.image[k] * images.mirrors[images.mirror[k]].sign * images.follow[k] * v[images.index[k]];
-    return sum;
-}
-
-double FilmStiffness::of_rims(std::size_t i) const {
-    const Images& images = p_.geometry.images;
-    double sum = 0.0;
-    for (std::size_t k = images.begin(i); k < images.end(i); ++k)
-        sum += pairs_.image[k] * dot(images.mirrors[images.mirror[k]].drift, images.normal[k]);
-    return sum;
 }
 
 }  // namespace lamella::melp

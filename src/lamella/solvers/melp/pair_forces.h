@@ -25,8 +25,8 @@ Cohesion cohesion(double gamma, double beta);
 /// strained where particle i stands deeper in the other bubble than films may. Gas alone presses joined films a quarter
 /// of a spacing into each other; those that have not joined keep a spacing of air between them.
 struct Spring {
-    double stiffness = 0.0;  ///< force along n_i over the velocity along n_i, or along n_j, times the time [N/m]
-    double force = 0.0;      ///< along n_i, into the own bubble [N]
+    double stiffness;  ///< force along n_i over the velocity along n_i, or along n_j, times the time [N/m]
+    double force;      ///< along n_i, into the own bubble [N]
 };
 
 /// The springs of all walls on one particle.
@@ -36,37 +36,15 @@ Spring spring_of_walls(const NormalProblem& problem, std::size_t i);
 struct Pairs {
     std::vector<double> gamma;  ///< film of joined regions that lies at each particle
     std::vector<double> own;    ///< tau_i per particle
-    std::vector<double> same;   ///< per entry of neighbors.same
-    std::vector<double> other;  ///< per entry of neighbors.other
+    RawVector<double> same;     ///< per entry of neighbors.same
+    RawVector<double> other;    ///< per entry of neighbors.other
     std::vector<double> image;  ///< per entry of images
-    std::vector<Spring> push;   ///< per entry of neighbors.other: what keeps films apart
+    RawVector<Spring> push;     ///< per entry of neighbors.other: what keeps films apart
 };
 
 Pairs pair_strengths(const NormalProblem& problem);
 
 /// Tension and cohesion along the normals, and what keeps films apart. [N]
 std::vector<double> pair_forces(const NormalProblem& problem, const Pairs& pairs);
-
-/// How these forces change with velocities along the normals: J_film of move_along_normals(). It reads the problem and
-/// the pairs, which have to outlive it.
-class FilmStiffness {
-public:
-    FilmStiffness(const NormalProblem& problem, const Pairs& pairs);
-
-    double diagonal(std::size_t i) const { return diagonal_[i]; }
-
-    /// (J_film v)_i
-    double apply(std::span<const double> v, std::size_t i) const;
-
-    /// What the motion of rims adds to (J_film v)_i.
-    double of_rims(std::size_t i) const;
-
-private:
-    const NormalProblem& p_;
-    const Pairs& pairs_;
-    std::vector<double> diagonal_;
-    // Per entry of the lists. Every iteration of the solver reads them: in single precision, alike in both rows.
-    std::vector<float> same_, other_;
-};
 
 }  // namespace lamella::melp

@@ -31,21 +31,22 @@ std::vector<double> excess(const Geometry& g, const CoarseParticles& coarse, std
 std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, double reach) {
     const Neighbors& same = g.neighbors.same;
     const std::size_t count = g.size();
-    std::vector<double> right(count), scale(count), diagonal(count), pair(same.index.size());
+    std::vector<double> right(count), scale(count), diagonal(count);
+    RawVector<float> pair(same.index.size());
     for_each_particle(count, [&](std::size_t i) {
         double sum = 0.0;
         for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
-            pair[k] = g.area[same.index[k]] * same.laplacian[k];
-            sum += pair[k];
+            pair[k] = static_cast<float>(g.area[i] * g.area[same.index[k]] * same.laplacian[k]);
+            sum += double{pair[k]};
         }
-        diagonal[i] = g.area[i] * (1.0 + reach * sum);
+        diagonal[i] = g.area[i] + reach * sum;
         scale[i] = 1.0 / diagonal[i];
         right[i] = g.area[i] * q[i];
     });
     const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
         y.resize(count);
         for_each_particle(count, [&](std::size_t i) {
-            y[i] = diagonal[i] * x[i] - reach * g.area[i] * sum_of_products(same, pair, x, i);
+            y[i] = diagonal[i] * x[i] - reach * sum_of_products(same, pair, x, i);
         });
     };
     std::vector<double> phi(count, 0.0);
