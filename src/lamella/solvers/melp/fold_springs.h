@@ -20,7 +20,7 @@ namespace lamella::melp {
 /// stretch it until it tears.
 class FoldSprings {
 public:
-    /// A quarter of this takes two thirds of the solver's iterations, and crowds of 40 bubbles stay more even with it;
+    /// A quarter of this takes two thirds of the solver's iterations, and the crowd of the tests stays more even with it;
     /// but caps at nine spacings to a radius meet at 122 degrees, and partitions are up to 2 % off.
     static constexpr double kStiffness = 144.0;
 
