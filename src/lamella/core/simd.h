@@ -54,17 +54,13 @@ LAMELLA_ALWAYS_INLINE Simd load_some(const float* p, std::size_t count) {
     const auto mask = static_cast<__mmask8>((1U << count) - 1U);
     return Simd(_mm512_maskz_cvtps_pd(mask, _mm256_maskz_loadu_ps(mask, p)));
 }
-LAMELLA_ALWAYS_INLINE Simd load_some(const double* p, std::size_t count) {
-    return Simd(_mm512_maskz_loadu_pd(static_cast<__mmask8>((1U << count) - 1U), p));
-}
 LAMELLA_ALWAYS_INLINE Simd gather_some(const double* p, const std::uint32_t* index, std::size_t count) {
     constexpr int kBytes = sizeof(double);
     const auto mask = static_cast<__mmask8>((1U << count) - 1U);
     return Simd(_mm512_mask_i32gather_pd(_mm512_setzero_pd(), mask, _mm256_maskz_loadu_epi32(mask, index), p, kBytes));
 }
 #else
-template <class Number>
-LAMELLA_ALWAYS_INLINE Simd load_some(const Number* p, std::size_t count) {
+LAMELLA_ALWAYS_INLINE Simd load_some(const float* p, std::size_t count) {
     return Simd([&](auto lane) { return lane < count ? double{p[lane]} : 0.0; });
 }
 LAMELLA_ALWAYS_INLINE Simd gather_some(const double* p, const std::uint32_t* index, std::size_t count) {

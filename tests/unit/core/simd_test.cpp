@@ -14,16 +14,9 @@ namespace {
 TEST(Lanes, LoadTheFirstOnesAndZerosInTheOthers) {
     for (std::size_t count = 1; count <= kLanes; ++count) {
         std::vector<float> narrow;
-        std::vector<double> wide;
-        for (std::size_t l = 0; l < count; ++l) {
-            narrow.push_back(0.1F + static_cast<float>(l));
-            wide.push_back(0.1 + static_cast<double>(l));
-        }
-        const Simd a = load_some(narrow.data(), count), b = load_some(wide.data(), count);
-        for (std::size_t l = 0; l < kLanes; ++l) {
-            EXPECT_EQ(a[l], l < count ? double{narrow[l]} : 0.0);
-            EXPECT_EQ(b[l], l < count ? wide[l] : 0.0);
-        }
+        for (std::size_t l = 0; l < count; ++l) narrow.push_back(0.1F + static_cast<float>(l));
+        const Simd a = load_some(narrow.data(), count);
+        for (std::size_t l = 0; l < kLanes; ++l) EXPECT_EQ(a[l], l < count ? double{narrow[l]} : 0.0);
     }
 }
 

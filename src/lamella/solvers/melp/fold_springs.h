@@ -20,8 +20,8 @@ namespace lamella::melp {
 /// stretch it until it tears.
 class FoldSprings {
 public:
-    /// A quarter of this takes two thirds of the solver's iterations, and the crowd of the tests stays more even with it;
-    /// but caps at nine spacings to a radius meet at 122 degrees, and partitions are up to 2 % off.
+    /// A quarter of this takes two thirds of the solver's iterations, and the crowd of the tests stays more even with
+    /// it; but caps at nine spacings to a radius meet at 122 degrees, and partitions are up to 2 % off.
     static constexpr double kStiffness = 144.0;
 
     /// It reads the problem, which has to outlive it.
