@@ -54,17 +54,51 @@ LAMELLA_ALWAYS_INLINE Simd load_some(const float* p, std::size_t count) {
     const auto mask = static_cast<__mmask8>((1U << count) - 1U);
     return Simd(_mm512_maskz_cvtps_pd(mask, _mm256_maskz_loadu_ps(mask, p)));
 }
+LAMELLA_ALWAYS_INLINE Simd load_some(const double* p, std::size_t count) {
+    const auto mask = static_cast<__mmask8>((1U << count) - 1U);
+    return Simd(_mm512_maskz_loadu_pd(mask, p));
+}
 LAMELLA_ALWAYS_INLINE Simd gather_some(const double* p, const std::uint32_t* index, std::size_t count) {
     constexpr int kBytes = sizeof(double);
     const auto mask = static_cast<__mmask8>((1U << count) - 1U);
     return Simd(_mm512_mask_i32gather_pd(_mm512_setzero_pd(), mask, _mm256_maskz_loadu_epi32(mask, index), p, kBytes));
 }
+/// Puts those of the first `count` values that are less than `limit` behind each other, and what `index` says of each;
+/// all eight places of both may be written to. @returns how many there are
+LAMELLA_ALWAYS_INLINE std::size_t pack_smaller(const Simd& value,
+                                               double limit,
+                                               const std::uint32_t* index,
+                                               std::size_t count,
+                                               double* packed_value,
+                                               std::uint32_t* packed_index) {
+    const auto mask = static_cast<__mmask8>((1U << count) - 1U);
+    const auto a = static_cast<__m512d>(value);
+    const __mmask8 smaller = _mm512_mask_cmp_pd_mask(mask, a, _mm512_set1_pd(limit), _CMP_LT_OQ);
+    _mm512_storeu_pd(packed_value, _mm512_maskz_compress_pd(smaller, a));
+    _mm256_storeu_epi32(packed_index, _mm256_maskz_compress_epi32(smaller, _mm256_maskz_loadu_epi32(mask, index)));
+    return static_cast<std::size_t>(__builtin_popcount(smaller));
+}
 #else
-LAMELLA_ALWAYS_INLINE Simd load_some(const float* p, std::size_t count) {
+template <class Value>
+LAMELLA_ALWAYS_INLINE Simd load_some(const Value* p, std::size_t count) {
     return Simd([&](auto lane) { return lane < count ? double{p[lane]} : 0.0; });
 }
 LAMELLA_ALWAYS_INLINE Simd gather_some(const double* p, const std::uint32_t* index, std::size_t count) {
     return Simd([&](auto lane) { return lane < count ? p[index[lane]] : 0.0; });
+}
+LAMELLA_ALWAYS_INLINE std::size_t pack_smaller(const Simd& value,
+                                               double limit,
+                                               const std::uint32_t* index,
+                                               std::size_t count,
+                                               double* packed_value,
+                                               std::uint32_t* packed_index) {
+    std::size_t packed = 0;
+    for (std::size_t lane = 0; lane < count; ++lane) {  // no branch: there is no order in it to guess
+        packed_value[packed] = value[lane];
+        packed_index[packed] = index[lane];
+        packed += value[lane] < limit ? 1 : 0;
+    }
+    return packed;
 }
 #endif
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "lamella/core/aligned.h"
 #include "lamella/core/vec.h"
 #include "lamella/spatial/cell_grid.h"
 
@@ -16,26 +15,25 @@ class PointGrid {
 public:
     PointGrid(std::span<const Vec3> position, double cell_edge);
 
-    /// Calls visit(index) for every point within `reach` of `center` on each axis, and some beyond.
+    /// Their numbers in the order of the cells.
+    std::span<const std::uint32_t> order() const { return grid_ ? grid_->order() : std::span<const std::uint32_t>{}; }
+
+    /// Calls visit(begin, end) for runs of order() that hold every point within `reach` of `center` on each axis, and
+    /// some beyond.
+    template <class Visit>
+    void for_each_run_near(const Vec3& center, double reach, Visit&& visit) const {
+        if (grid_) grid_->for_each_range(center - low_, reach, visit);
+    }
+    /// Calls visit(index) for each of them.
     template <class Visit>
     void for_each_near(const Vec3& center, double reach, Visit&& visit) const {
-        if (!grid_) return;
-        grid_->for_each_range(center - low_, reach, [&](std::uint32_t begin, std::uint32_t end) {
-            for (const std::uint32_t i : grid_->order().subspan(begin, end - begin)) visit(i);
+        for_each_run_near(center, reach, [&](std::uint32_t begin, std::uint32_t end) {
+            for (const std::uint32_t i : order().subspan(begin, end - begin)) visit(i);
         });
     }
 
-    /// Points nearer to a place than a radius. Its memory serves many searches.
-    struct Found {
-        std::size_t count = 0;
-        std::vector<std::uint32_t> index;
-        std::vector<double> square;  ///< distance [m^2]
-    };
-    void find_within(const Vec3& center, double radius, Found& found) const;
-
 private:
-    Vec3 low_;                  ///< lower corner of the points
-    std::vector<Vec3> sorted_;  ///< the points in the order of the grid
+    Vec3 low_;  ///< lower corner of the points
     std::optional<spatial::CellGrid<3>> grid_;
 };
 
