@@ -55,17 +55,19 @@ TEST(FoldSprings, HaveASymmetricPositiveMatrixAndNoneWhereNoOtherBubbleIs) {
         v[i] = std::sin(2.0 + 78.233 * static_cast<double>(i));
     }
     springs(pair, [&](const FoldSprings& folds, const Geometry& geometry) {
-        std::vector<double> of_u, of_v;
-        folds.strain(u, of_u);
-        folds.strain(v, of_v);
-        const auto product = [&](const std::vector<double>& strain, std::size_t i) {
-            return folds.on_own(i) * strain[i] + sum_of_products(geometry.neighbors.same, folds.on_others(), strain, i);
+        const Neighbors& same = geometry.neighbors.same;
+        const auto strain = [&](const std::vector<double>& w) {
+            std::vector<double> result(count, 0.0);
+            for (std::size_t i = 0; i < count; ++i)
+                if (folds.strained(i)) result[i] = folds.strain(i, w[i], sum_of_products(same, folds.heights(), w, i));
+            return result;
         };
+        const std::vector<double> of_u = strain(u), of_v = strain(v);
         double uv = 0.0, vu = 0.0, uu = 0.0, alone = 0.0;
         for (std::size_t i = 0; i < count; ++i) {
-            uv += u[i] * product(of_v, i);
-            vu += v[i] * product(of_u, i);
-            uu += u[i] * product(of_u, i);
+            uv += u[i] * folds.hold(i, of_v);
+            vu += v[i] * folds.hold(i, of_u);
+            uu += u[i] * folds.hold(i, of_u);
             const Neighbors& other = geometry.neighbors.other;
             if (other.begin(i) == other.end(i)) alone = std::max(alone, std::abs(of_u[i]));
         }

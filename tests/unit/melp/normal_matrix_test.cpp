@@ -23,9 +23,9 @@ void matrix_of_a_pair(const std::function<void(NormalMatrix&, const NormalProble
             const Flight flight(problem.geometry, problem.coarse, problem.mass, problem.gas.size());
             const Inertia inertia(problem, flight, walls);
             const FoldSprings folds(problem, pairs);
-            const FilmStiffness films(problem, pairs, folds);
+            FilmStiffness films(problem, pairs, folds);
             const GasStiffness gas(problem);
-            NormalMatrix matrix(problem, flight, inertia, gas, films, folds);
+            NormalMatrix matrix(problem, flight, inertia, gas, films);
             use(matrix, problem);
         },
         kShapeDamping);

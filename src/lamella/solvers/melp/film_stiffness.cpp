@@ -10,7 +10,9 @@ FilmStiffness::FilmStiffness(const NormalProblem& p, const Pairs& pairs, const F
       folds_(folds),
       diagonal_(p.coarse.size()),
       same_(pairs.same.size()),
-      other_(pairs.other.size()) {
+      other_(pairs.other.size()),
+      force_(p.coarse.size()),
+      strain_(p.coarse.size(), 0.0) {
     const Neighbors& same = p.geometry.neighbors.same;
     const Neighbors& other = p.geometry.neighbors.other;
     const std::vector<Vec3>& n = p.geometry.normal;
@@ -33,20 +35,22 @@ FilmStiffness::FilmStiffness(const NormalProblem& p, const Pairs& pairs, const F
     });
 }
 
-double FilmStiffness::apply(std::span<const double> v, std::span<const double> strain, std::size_t i) const {
+void FilmStiffness::move(std::span<const double> v) {
     const Neighbors& same = p_.geometry.neighbors.same;
-    double sum = diagonal_[i] * v[i] + sum_of_products(p_.geometry.neighbors.other, other_, v, i);
-    if (strain.empty()) {
-        sum += sum_of_products(same, same_, v, i);
-    } else {
-        const auto [pull, hold] =
-            sums_of_products<RawVector<float>>(same, {&same_, &folds_.on_others()}, {v, strain}, i);
-        sum += pull - hold - folds_.on_own(i) * strain[i];
-    }
     const Images& images = p_.geometry.images;
-    for (std::size_t k = images.begin(i); k < images.end(i); ++k)
-        sum += pairs_.image[k] * images.mirrors[images.mirror[k]].sign * images.follow[k] * v[images.index[k]];
-    return sum;
+    for_each_particle(v.size(), [&](std::size_t i) {
+        double sum = diagonal_[i] * v[i] + sum_of_products(p_.geometry.neighbors.other, other_, v, i);
+        if (folds_.none() || !folds_.strained(i)) {
+            sum += sum_of_products(same, same_, v, i);
+        } else {
+            const auto [pull, lifted] = sums_of_products<RawVector<float>>(same, {&same_, &folds_.heights()}, v, i);
+            sum += pull;
+            strain_[i] = folds_.strain(i, v[i], lifted);
+        }
+        for (std::size_t k = images.begin(i); k < images.end(i); ++k)
+            sum += pairs_.image[k] * images.mirrors[images.mirror[k]].sign * images.follow[k] * v[images.index[k]];
+        force_[i] = sum;
+    });
 }
 
 double FilmStiffness::of_rims(std::size_t i) const {

@@ -17,10 +17,12 @@ class FilmStiffness {
 public:
     FilmStiffness(const NormalProblem& problem, const Pairs& pairs, const FoldSprings& folds);
 
+    bool has_springs() const { return !folds_.none(); }
     double diagonal(std::size_t i) const { return diagonal_[i] - folds_.diagonal(i); }
 
-    /// (J_film v)_i, with the strain of v in the springs.
-    double apply(std::span<const double> v, std::span<const double> strain, std::size_t i) const;
+    /// J_film v in two passes: move() looks at all particles, then force() gives one of its entries.
+    void move(std::span<const double> v);
+    double force(std::size_t i) const { return folds_.none() ? force_[i] : force_[i] - folds_.hold(i, strain_); }
 
     /// What the motion of rims adds to (J_film v)_i.
     double of_rims(std::size_t i) const;
@@ -32,6 +34,8 @@ private:
     std::vector<double> diagonal_;  // without springs
     // Per entry of the lists. Every iteration of the solver reads them: in single precision, alike in both rows.
     RawVector<float> same_, other_;
+    RawVector<double> force_;     // by the v at hand, without springs
+    std::vector<double> strain_;  // and what it strains them
 };
 
 }  // namespace lamella::melp

@@ -27,6 +27,7 @@ FoldSprings::FoldSprings(const NormalProblem& p, const Pairs& pairs) : same_(p.g
     stiffness_.resize(count);
     force_.resize(count);
     own_.resize(count);
+    held_.resize(count);
     into_.resize(same_.index.size());
     from_.resize(same_.index.size());
     const std::vector<FitRow>& row = p.geometry.fit_row;
@@ -37,40 +38,37 @@ FoldSprings::FoldSprings(const NormalProblem& p, const Pairs& pairs) : same_(p.g
         force_[i] = stiffness_[i] * patch[i].c[0];
     });
     for_each_particle(count, [&](std::size_t i) {
-        const Vec3& normal = p.geometry.normal[i];
+        if (!strained(i)) return;
         double weights = 0.0;
         for (std::size_t k = same_.begin(i); k < same_.end(i); ++k) {
             const std::size_t j = same_.index[k];
-            into_[k] = from_[k] = 0.0F;
-            if (stiffness_[i] > 0.0) {
-                const double weight = weight_of(row[i], patch[i], x[j], per_reach);
-                into_[k] = static_cast<float>(weight * dot(patch[i].frame.normal, p.geometry.normal[j]));
-                weights += weight;
-            }
-            if (stiffness_[j] > 0.0)
-                from_[k] = static_cast<float>(weight_of(row[j], patch[j], x[i], per_reach) *
-                                              dot(patch[j].frame.normal, normal));
+            const double weight = weight_of(row[i], patch[i], x[j], per_reach);
+            into_[k] = static_cast<float>(weight * dot(patch[i].frame.normal, p.geometry.normal[j]));
+            weights += weight;
         }
         const Images& images = p.geometry.images;  // they stand still here, and rims take what pulls them
         for (std::size_t k = images.begin(i); k < images.end(i); ++k)
             weights += weight_of(row[i], patch[i], images.place[k], per_reach);
-        own_[i] = -weights * dot(patch[i].frame.normal, normal);
+        own_[i] = -weights * dot(patch[i].frame.normal, p.geometry.normal[i]);
+    });
+    for_each_particle(count, [&](std::size_t i) {
+        const auto begin = same_.index.begin();
+        held_[i] = strained(i) || std::any_of(begin + same_.start[i], begin + same_.start[i + 1],
+                                              [&](std::uint32_t j) { return strained(j); });
+        if (held_[i] == 0) return;
+        for (std::size_t k = same_.begin(i); k < same_.end(i); ++k) {
+            const std::size_t j = same_.index[k];
+            from_[k] = !strained(j) ? 0.0F
+                                    : static_cast<float>(weight_of(row[j], patch[j], x[i], per_reach) *
+                                                         dot(patch[j].frame.normal, p.geometry.normal[i]));
+        }
     });
 }
 
-double FoldSprings::force(std::size_t i) const {
-    return force_.empty() ? 0.0 : -own_[i] * force_[i] - sum_of_products(same_, from_, force_, i);
-}
-
-void FoldSprings::strain(std::span<const double> v, std::vector<double>& strain) const {
-    strain.resize(own_.size());
-    for_each_particle(strain.size(), [&](std::size_t i) {
-        strain[i] = stiffness_[i] == 0.0 ? 0.0 : stiffness_[i] * (own_[i] * v[i] + sum_of_products(same_, into_, v, i));
-    });
-}
+double FoldSprings::force(std::size_t i) const { return none() ? 0.0 : -hold(i, force_); }
 
 double FoldSprings::diagonal(std::size_t i) const {
-    if (own_.empty()) return 0.0;
+    if (none() || held_[i] == 0) return 0.0;
     double sum = stiffness_[i] * own_[i] * own_[i];
     for (std::size_t k = same_.begin(i); k < same_.end(i); ++k)
         sum += stiffness_[same_.index[k]] * double{from_[k]} * double{from_[k]};

@@ -4,6 +4,7 @@
 #include "lamella/solvers/melp/pair_forces.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -30,20 +31,28 @@ public:
     /// Of all springs on particle i, along its normal [N].
     double force(std::size_t i) const;
 
+    /// No bubbles touch.
+    bool none() const { return own_.empty(); }
+
     /// K v comes in two passes, K = sum_i k_i g_i g_i^T with g_i = grad h_i along the normals [N/m]: the strain per
-    /// particle, k_i g_i . v, empty where no bubbles touch, and from that (K v)_i = on_own_i strain_i + sum_j
-    /// on_others_k strain_j over the entries k of particle i, on its neighbors j.
-    void strain(std::span<const double> v, std::vector<double>& strain) const;
-    double on_own(std::size_t i) const { return own_[i]; }
-    const RawVector<float>& on_others() const { return from_; }
+    /// particle, k_i g_i . v, from what the neighbors lift of the patch, sum_j heights_k v_j over the entries k of
+    /// particle i; and from that (K v)_i. Most particles of two bubbles strain no spring, have no heights and hang on
+    /// none.
+    bool strained(std::size_t i) const { return stiffness_[i] > 0.0; }
+    const RawVector<float>& heights() const { return into_; }
+    double strain(std::size_t i, double v, double lifted) const { return stiffness_[i] * (own_[i] * v + lifted); }
+    double hold(std::size_t i, std::span<const double> strain) const {
+        return held_[i] == 0 ? 0.0 : own_[i] * strain[i] + sum_of_products(same_, from_, strain, i);
+    }
     /// K_ii [N/m]
     double diagonal(std::size_t i) const;
 
 private:
     const Neighbors& same_;
-    std::vector<double> stiffness_;  // k per particle; none: no bubbles touch [N/m]
-    std::vector<double> force_;      // k_i h_i per particle [N]
-    std::vector<double> own_;        // d h_i / d x_i, along the normal
+    std::vector<double> stiffness_;   // k per particle; none: no bubbles touch [N/m]
+    std::vector<double> force_;       // k_i h_i per particle [N]
+    std::vector<double> own_;         // d h_i / d x_i, along the normal
+    std::vector<std::uint8_t> held_;  // by a spring, its own or a neighbor's
     // Per entry of neighbors.same. Every iteration of the solver reads them: in single precision, alike in both rows.
     RawVector<float> into_;  // d h_i / d x_j
     RawVector<float> from_;  // d h_j / d x_i

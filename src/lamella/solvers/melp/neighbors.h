@@ -39,17 +39,18 @@ double sum_of_products(const Neighbors& list, const Factors& factor, std::span<c
     return sum_of_lanes(sum);
 }
 
-/// Two such sums in one pass over the indices.
+/// Two such sums with the same values.
 template <class Factors>
 std::array<double, 2> sums_of_products(const Neighbors& list,
                                        const std::array<const Factors*, 2>& factor,
-                                       const std::array<std::span<const double>, 2>& value,
+                                       std::span<const double> value,
                                        std::size_t i) {
     Simd first{}, second{};
     for (std::size_t k = list.begin(i), end = list.end(i); k < end; k += kLanes) {
         const std::size_t count = std::min(end - k, kLanes);
-        first += load_some(&(*factor[0])[k], count) * gather_some(value[0].data(), &list.index[k], count);
-        second += load_some(&(*factor[1])[k], count) * gather_some(value[1].data(), &list.index[k], count);
+        const Simd gathered = gather_some(value.data(), &list.index[k], count);
+        first += load_some(&(*factor[0])[k], count) * gathered;
+        second += load_some(&(*factor[1])[k], count) * gathered;
     }
     return {sum_of_lanes(first), sum_of_lanes(second)};
 }

@@ -41,32 +41,30 @@ std::vector<double> GasStiffness::growth(const std::vector<double>& v) const {
     return sum_over_regions(p_.coarse.region, p_.gas.size(), [&](std::size_t i) { return area_[i] * v[i]; });
 }
 
-NormalMatrix::NormalMatrix(const NormalProblem& p,
-                           const Flight& flight,
-                           const Inertia& inertia,
-                           const GasStiffness& gas,
-                           const FilmStiffness& films,
-                           const FoldSprings& folds)
+NormalMatrix::NormalMatrix(
+    const NormalProblem& p, const Flight& flight, const Inertia& inertia, const GasStiffness& gas, FilmStiffness& films)
     : p_(p),
       flight_(flight),
       gas_(gas),
       films_(films),
-      folds_(folds),
       implicit_(p.theta * p.theta * p.dt * p.dt),
       shape_(p.dt * p.shape_damping),
       inertia_(p.coarse.size()),
       whole_(p.coarse.size()),
-      scale_(p.coarse.size()),
       share_(p.gas.size()) {
-    for_each_particle(scale_.size(), [&](std::size_t i) {
+    const std::size_t count = p.coarse.size();
+    std::vector<double> diagonal(count), pushed(count);
+    for_each_particle(count, [&](std::size_t i) {
         const Vec3 flown = p.mass[i] * p.geometry.normal[i];
         inertia_[i] = inertia.diagonal(i);
-        whole_[i] = {{flown[0], flown[1], flown[2], gas.area(i)}};
-        scale_[i] = 1.0 / (inertia_[i] - implicit_ * films.diagonal(i));
+        pushed[i] = gas.area(i);
+        whole_[i] = {{flown[0], flown[1], flown[2], pushed[i]}};
+        diagonal[i] = inertia_[i] - implicit_ * films.diagonal(i);
     });
-    const std::vector<double> soft =  // b D^-1 b
-        sum_over_regions(p.coarse.region, p.gas.size(),
-                         [&](std::size_t i) { return gas.area(i) * gas.area(i) * scale_[i]; });
+    without_gas_.emplace(p.geometry, inertia_, diagonal, films.has_springs());
+    without_gas_->apply(pushed, yield_);
+    const std::vector<double> soft =  // b . P^-1 b
+        sum_over_regions(p.coarse.region, p.gas.size(), [&](std::size_t i) { return pushed[i] * yield_[i]; });
     for (std::size_t r = 0; r < share_.size(); ++r) share_[r] = gas.stiffness(r) / (1.0 + gas.stiffness(r) * soft[r]);
 }
 
@@ -78,20 +76,18 @@ void NormalMatrix::apply(const std::vector<double>& v, std::vector<double>& y) {
         const Vec3 freed = -shape_ * flight_.of_momentum(r, {{whole[r][0], whole[r][1], whole[r][2]}});
         whole[r] = {{freed[0], freed[1], freed[2], gas_.stiffness(r) * whole[r][3]}};
     }
-    folds_.strain(v, strain_);
+    films_.move(v);
     for_each_particle(v.size(), [&](std::size_t i) {
-        y[i] = inertia_[i] * v[i] + dot(whole_[i], whole[region_of(p_.coarse, i)]) -
-               implicit_ * films_.apply(v, strain_, i);
+        y[i] = inertia_[i] * v[i] + dot(whole_[i], whole[region_of(p_.coarse, i)]) - implicit_ * films_.force(i);
     });
 }
 
-void NormalMatrix::precondition(const std::vector<double>& u, std::vector<double>& v) const {
-    v.resize(u.size());
-    std::vector<double> held = sum_over_regions(p_.coarse.region, p_.gas.size(),
-                                                [&](std::size_t i) { return gas_.area(i) * scale_[i] * u[i]; });
+void NormalMatrix::precondition(const std::vector<double>& u, std::vector<double>& v) {
+    without_gas_->apply(u, v);
+    std::vector<double> held =
+        sum_over_regions(p_.coarse.region, p_.gas.size(), [&](std::size_t i) { return gas_.area(i) * v[i]; });
     for (std::size_t r = 0; r < held.size(); ++r) held[r] *= share_[r];
-    for_each_particle(u.size(),
-                      [&](std::size_t i) { v[i] = scale_[i] * (u[i] - gas_.area(i) * held[region_of(p_.coarse, i)]); });
+    for_each_particle(u.size(), [&](std::size_t i) { v[i] -= held[region_of(p_.coarse, i)] * yield_[i]; });
 }
 
 }  // namespace lamella::melp

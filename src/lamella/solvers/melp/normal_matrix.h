@@ -1,13 +1,14 @@
 #pragma once
 
 #include "lamella/core/vec.h"
+#include "lamella/solvers/melp/film_preconditioner.h"
 #include "lamella/solvers/melp/film_stiffness.h"
 #include "lamella/solvers/melp/flight.h"
-#include "lamella/solvers/melp/fold_springs.h"
 #include "lamella/solvers/melp/normal_motion.h"
 #include "lamella/solvers/melp/pair_forces.h"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,16 +63,15 @@ public:
                  const Flight& flight,
                  const Inertia& inertia,
                  const GasStiffness& gas,
-                 const FilmStiffness& films,
-                 const FoldSprings& folds);
+                 FilmStiffness& films);
 
     /// y = A v
     void apply(const std::vector<double>& v, std::vector<double>& y);
 
-    /// v about A^-1 u: the diagonal of masses and films with the gases, D + sum_r g_r b_r b_r^T, inverted exactly as
-    /// each particle belongs to one gas (Sherman and Morrison). With the diagonal alone each bubble of a foam has a
-    /// stiff direction of its own, and takes an iteration.
-    void precondition(const std::vector<double>& u, std::vector<double>& v) const;
+    /// v about A^-1 u: what FilmPreconditioner makes of inertia and films, P^-1, with the gases, P + sum_r g_r b_r
+    /// b_r^T, inverted exactly as each particle belongs to one gas (Sherman and Morrison). Without them each bubble of
+    /// a foam has a stiff direction of its own, and takes an iteration.
+    void precondition(const std::vector<double>& u, std::vector<double>& v);
 
 private:
     using Whole = Vec<4>;  // what a region does as a whole: its momentum sum m v n, and how its gas grows
@@ -79,14 +79,13 @@ private:
     const NormalProblem& p_;
     const Flight& flight_;
     const GasStiffness& gas_;
-    const FilmStiffness& films_;
-    const FoldSprings& folds_;
+    FilmStiffness& films_;
     double implicit_, shape_;
     std::vector<double> inertia_;  // its diagonal
     std::vector<Whole> whole_;     // per velocity, of each particle
-    std::vector<double> scale_;    // 1 / D
-    std::vector<double> share_;    // g / (1 + g b D^-1 b) per region
-    std::vector<double> strain_;   // of the springs, by the v at hand
+    std::optional<FilmPreconditioner> without_gas_;
+    std::vector<double> yield_;  // P^-1 b
+    std::vector<double> share_;  // g / (1 + g b P^-1 b) per region
 };
 
 }  // namespace lamella::melp

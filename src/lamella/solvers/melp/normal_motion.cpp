@@ -62,18 +62,18 @@ NormalStep move_along_normals(const NormalProblem& p) {
     const std::vector<FreeCluster> free = free_clusters(p.coarse, p.geometry, p.gas, p.rims, maps);
     const Inertia inertia(p, flight, walls);
     const FoldSprings folds(p, pairs);
-    const FilmStiffness films(p, pairs, folds);
+    FilmStiffness films(p, pairs, folds);
     const GasStiffness gas(p);
     const std::vector<double> given = given_momentum(p, pairs, folds, gas, walls, free);
 
     const double mixed = p.theta * (1.0 - p.theta) * p.dt * p.dt;
-    std::vector<double> right(count), strain;
-    if (mixed > 0.0) folds.strain(p.velocity, strain);
+    std::vector<double> right(count);
+    if (mixed > 0.0) films.move(p.velocity);
     for_each_particle(count, [&](std::size_t i) {
         right[i] = given[i] + p.theta * p.dt * p.dt * films.of_rims(i);
-        if (mixed > 0.0) right[i] += mixed * films.apply(p.velocity, strain, i);
+        if (mixed > 0.0) right[i] += mixed * films.force(i);
     });
-    NormalMatrix matrix(p, flight, inertia, gas, films, folds);
+    NormalMatrix matrix(p, flight, inertia, gas, films);
     NormalStep step;
     step.velocity.assign(p.velocity.begin(), p.velocity.end());
     constexpr int kMostIterations = 2000;
