@@ -112,7 +112,14 @@ LAMELLA_ALWAYS_INLINE Simd select(const Simd::mask_type& condition, const Simd& 
     stdx::where(condition, result) = yes;
     return result;
 }
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+// Not stdx::sqrt(): g++ 12 warns that its own header reads something uninitialized there.
+LAMELLA_ALWAYS_INLINE Simd square_root(const Simd& a) {
+    return Simd(_mm512_maskz_sqrt_pd(0xff, static_cast<__m512d>(a)));
+}
+#else
 LAMELLA_ALWAYS_INLINE Simd square_root(const Simd& a) { return stdx::sqrt(a); }
+#endif
 LAMELLA_ALWAYS_INLINE Simd larger(const Simd& a, const Simd& b) { return stdx::max(a, b); }
 LAMELLA_ALWAYS_INLINE Simd smaller(const Simd& a, const Simd& b) { return stdx::min(a, b); }
 LAMELLA_ALWAYS_INLINE Simd absolute(const Simd& a) { return stdx::abs(a); }

@@ -9,7 +9,9 @@ namespace {
 
 /// What the height of a patch at its origin has of that of a place.
 inline double weight_of(const FitRow& row, const Patch& patch, const Vec3& place, double per_reach) {
-    const FitPoint point = point_of(patch, place, per_reach);
+    const Vec3 d = per_reach * (place - patch.origin);
+    const auto point =
+        fit_point(dot(patch.frame.e1, d), dot(patch.frame.e2, d), dot(patch.frame.normal, d), squared_norm(d));
     double sum = 0.0;
     for (std::size_t a = 0; a < row.size(); ++a) sum += row[a] * point.term[a];
     return point.weight * sum;

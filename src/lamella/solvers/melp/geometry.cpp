@@ -1,62 +1,11 @@
 #include "lamella/solvers/melp/geometry.h"
 
 #include "lamella/core/parallel.h"
-#include "lamella/linalg/small_cholesky.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace lamella::melp {
-
-Frame frame_of(const Vec3& n) {
-    // The branch keeps the divisor away from zero.
-    const double sign = n[2] < 0.0 ? -1.0 : 1.0;
-    const double a = -1.0 / (sign + n[2]);
-    const double b = n[0] * n[1] * a;
-    return {{{1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]}}, {{b, sign + n[1] * n[1] * a, -n[1]}}, n};
-}
-
-Patch fit_patch(std::span<const Vec3> position,
-                const Vec3& frame_normal,
-                const Neighbors& neighbors,
-                const Images& images,
-                std::size_t i,
-                FitRow* row) {
-    Patch patch{position[i], frame_of(frame_normal)};
-    constexpr std::size_t kTerms = Patch::kTerms;
-    if (neighbors.end(i) - neighbors.begin(i) + images.end(i) - images.begin(i) + 1 < kTerms) return patch;
-    const double unit = neighbors.kernel.support_radius;
-    FitMatrix matrix = empty_fit();
-    std::array<double, kTerms> right{};
-    const auto add = [&](const Vec3& place) {
-        const FitPoint point = point_of(patch, place, 1.0 / unit);
-        add_to_fit(point, matrix);
-        for (std::size_t p = 0; p < kTerms; ++p) right[p] += point.weight * point.term[p] * point.z;
-    };
-    for (std::size_t k = neighbors.begin(i); k < neighbors.end(i); ++k) add(position[neighbors.index[k]]);
-    for (std::size_t k = images.begin(i); k < images.end(i); ++k) add(images.place[k]);
-    if (!linalg::factor_positive<kTerms>(matrix)) return patch;
-    linalg::solve_factored<kTerms>(matrix, right);
-    patch.c = {right[0] * unit, right[1], right[2], right[3] / unit, right[4] / unit, right[5] / unit};
-    if (row != nullptr) {
-        *row = {1.0};
-        linalg::solve_factored<kTerms>(matrix, *row);
-    }
-    return patch;
-}
-
-PatchShape shape_of(const Patch& patch) {
-    // Films that are resolved are less steep than this over their smooth normals; the fit at a sharp fold may tilt onto
-    // one of its faces, and onto the other one in the next step.
-    constexpr double kSteepest = 0.4;
-    const auto& c = patch.c;
-    const double zu = c[1], zv = c[2], zuu = 2.0 * c[3], zuv = c[4], zvv = 2.0 * c[5];
-    const double g = 1.0 + zu * zu + zv * zv;
-    const double sum = ((1.0 + zv * zv) * zuu - 2.0 * zu * zv * zuv + (1.0 + zu * zu) * zvv) / (g * std::sqrt(g));
-    const double slope = std::sqrt(zu * zu + zv * zv), part = slope > kSteepest ? kSteepest / slope : 1.0;
-    const Vec3 normal = patch.frame.normal - part * (zu * patch.frame.e1 + zv * patch.frame.e2);
-    return {normal / norm(normal), sum};
-}
 
 namespace {
 
@@ -114,9 +63,10 @@ Geometry geometry_of(const CoarseParticles& coarse, double support_radius, std::
     if (!other.index.empty()) g.fit_row.resize(count);
     constexpr std::size_t kBlock = 256;
     parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
+        const std::span<FitRow> row = other.index.empty() ? std::span<FitRow>{} : std::span(g.fit_row);
+        fit_patches(coarse.position, coarse.frame_normal, same, g.images, first,
+                    std::span(g.patch).subspan(first, last - first), row.empty() ? row : row.subspan(first));
         for (std::size_t i = first; i < last; ++i) {
-            g.patch[i] = fit_patch(coarse.position, coarse.frame_normal[i], same, g.images, i,
-                                   meets_others(i) ? &g.fit_row[i] : nullptr);
             const PatchShape shape = shape_of(g.patch[i]);
             g.normal[i] = shape.normal;
             g.curvature[i] = shape.curvature;

@@ -34,10 +34,12 @@ public:
     /// Of the row at hand, if it is there.
     void take_out(std::uint32_t j) {
         const std::span<const std::uint32_t> row = row_at_hand();
-        const auto at = begin_ + static_cast<std::size_t>(std::find(row.begin(), row.end(), j) - row.begin());
+        const std::size_t at = begin_ + static_cast<std::size_t>(std::find(row.begin(), row.end(), j) - row.begin());
         if (at == end_) return;
-        std::copy(&index_[at] + 1, &index_[0] + end_, &index_[at]);
-        std::copy(&square_[at] + 1, &square_[0] + end_, &square_[at]);
+        for (std::size_t k = at; k + 1 < end_; ++k) {
+            index_[k] = index_[k + 1];
+            square_[k] = square_[k + 1];
+        }
         --end_;
     }
     void close_row() {

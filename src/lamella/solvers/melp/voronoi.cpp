@@ -11,13 +11,16 @@ void VoronoiCell::build(std::span<const Vec3> position, const Vec3& normal, cons
     cell_.assign({{-far, -far, kNobody}, {far, -far, kNobody}, {far, far, kNobody}, {-far, far, kNobody}});
     farthest_ = 2.0 * far * far;
     const Frame frame = frame_of(normal);
+    seen_.clear();
+    for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
+        const Vec3 d = position[same.index[k]] - position[i];
+        seen_.push_back({same.index[k], dot(frame.e1, d), dot(frame.e2, d), squared_norm(d)});
+    }
     // Near ones first: few of the others touch what they leave.
     const double near = 0.5 * far;
     for (const bool nearer : {true, false})
-        for (std::size_t k = same.begin(i); k < same.end(i); ++k) {
-            const Vec3 d = position[same.index[k]] - position[i];
-            if ((squared_norm(d) < near * near) == nearer) cut_off(same.index[k], dot(frame.e1, d), dot(frame.e2, d));
-        }
+        for (const Seen& other : seen_)
+            if ((other.square < near * near) == nearer) cut_off(other.j, other.u, other.v);
 }
 
 void VoronoiCell::cut_off(std::uint32_t j, double u, double v) {

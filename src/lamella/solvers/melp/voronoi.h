@@ -27,8 +27,13 @@ public:
     double area() const;
 
 private:
+    struct Seen {
+        std::uint32_t j;
+        double u, v, square;  // in the tangent plane, and the squared distance in space
+    };
     void cut_off(std::uint32_t j, double u, double v);
 
+    std::vector<Seen> seen_;
     std::vector<Corner> cell_, cut_;
     std::vector<double> beyond_;
     double farthest_ = 0.0;  // corner, squared [m^2]
