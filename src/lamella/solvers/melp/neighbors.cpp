@@ -6,7 +6,8 @@
 #include "lamella/solvers/melp/point_grid.h"
 
 #include <algorithm>
-#include <utility>
+#include <array>
+#include <numeric>
 
 namespace lamella::melp {
 namespace {
@@ -81,14 +82,19 @@ public:
         });
     }
 
-    /// Adds what lies within reach to rows of the same and of other regions, the particle itself, too.
-    void add_near(const Vec3& position, const Vec3& normal, std::int32_t region, Rows& same, Rows& other) const {
+    std::span<const std::uint32_t> order() const { return grid_.order(); }
+
+    /// Adds what lies within reach of the particle at a place of the order to rows of the same and of other regions,
+    /// the particle itself, too.
+    void add_near(std::size_t at, Rows& same, Rows& other) const {
+        const Vec3 position{{position_[0][at], position_[1][at], position_[2][at]}};
+        const Vec3 normal{{normal_[0][at], normal_[1][at], normal_[2][at]}};
         // Plain pointers: what is written to rows could else be any of them to the compiler, which reads all anew then.
         const std::array<const double*, 3> x{position_[0].data(), position_[1].data(), position_[2].data()};
         const std::array<const double*, 3> n{normal_[0].data(), normal_[1].data(), normal_[2].data()};
         const double* const regions = region_.data();
         const std::uint32_t* const order = grid_.order().data();
-        const Simd far(reach_ * reach_), own(region);
+        const Simd far(reach_ * reach_), own(region_[at]);
         grid_.for_each_run_near(
             position, reach_, [&, x, n, regions, order, far, own](std::size_t begin, std::size_t end) {
                 const Rows::Place mine = same.make_room(end - begin), theirs = other.make_room(end - begin);
@@ -119,24 +125,33 @@ private:
     Column region_;
 };
 
-Neighbors joined(std::size_t count, const std::vector<Rows>& blocks, const FilmKernel& kernel) {
+constexpr std::size_t kBlock = 256;
+
+/// Rows that were found in some order of the particles, put into the particles' own.
+Neighbors joined(const std::vector<Rows>& blocks, std::span<const std::uint32_t> order, const FilmKernel& kernel) {
     Neighbors all;
     all.kernel = kernel;
-    all.start.reserve(count + 1);
-    all.start.push_back(0);
-    std::vector<std::size_t> first;
-    for (const Rows& rows : blocks) {
-        first.push_back(all.start.back());
-        for (const std::uint32_t length : rows.length()) all.start.push_back(all.start.back() + length);
-    }
+    all.start.assign(order.size() + 1, 0);
+    parallel_blocks(order.size(), kBlock, [&](std::size_t first, std::size_t last) {
+        const std::span<const std::uint32_t> length = blocks[first / kBlock].length();
+        for (std::size_t s = first; s < last; ++s) all.start[order[s] + 1] = length[s - first];
+    });
+    std::partial_sum(all.start.begin(), all.start.end(), all.start.begin());
     all.index.resize(all.start.back());
     all.weight.resize(all.start.back());
     all.laplacian.resize(all.start.back());
-    parallel_blocks(blocks.size(), 1, [&](std::size_t b, std::size_t) {
-        const std::span<const std::uint32_t> index = blocks[b].index();
-        std::copy(index.begin(), index.end(), all.index.begin() + static_cast<std::ptrdiff_t>(first[b]));
-        kernel.weigh(blocks[b].square(), {all.weight.data() + first[b], index.size()},
-                     {all.laplacian.data() + first[b], index.size()});
+    parallel_blocks(order.size(), kBlock, [&](std::size_t first, std::size_t last) {
+        const Rows& rows = blocks[first / kBlock];
+        RawVector<double> weight(rows.square().size()), laplacian(rows.square().size());
+        kernel.weigh(rows.square(), weight, laplacian);
+        std::size_t from = 0;
+        for (std::size_t s = first; s < last; ++s) {
+            const std::size_t to = all.start[order[s]], length = rows.length()[s - first];
+            std::copy_n(rows.index().begin() + static_cast<std::ptrdiff_t>(from), length, &all.index[to]);
+            std::copy_n(&weight[from], length, &all.weight[to]);
+            std::copy_n(&laplacian[from], length, &all.laplacian[to]);
+            from += length;
+        }
     });
     return all;
 }
@@ -146,26 +161,28 @@ void tidy(std::vector<RegionPair>& pairs) {
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
-/// Pairs of regions that one block of particles meets.
-class MetRegions {
-public:
-    explicit MetRegions(std::size_t regions) : last_(regions, -1) {}
-
-    void meet(std::int32_t a, std::int32_t b) {
-        std::int32_t& last = last_[static_cast<std::size_t>(b)];
-        if (a > b || last == a) return;
-        last = a;
-        pairs_.push_back({a, b});
-    }
-    std::vector<RegionPair> tidied() && {
-        tidy(pairs_);
-        return std::move(pairs_);
-    }
-
-private:
-    std::vector<std::int32_t> last_;  // that each was met by: particles of one region mostly stand together
-    std::vector<RegionPair> pairs_;
-};
+/// Every two regions that have a pair, ascending.
+std::vector<RegionPair> regions_of(const Neighbors& other, std::span<const std::int32_t> region) {
+    const std::int32_t regions = region.empty() ? 0 : *std::max_element(region.begin(), region.end()) + 1;
+    std::vector<std::vector<RegionPair>> met((region.size() + kBlock - 1) / kBlock);
+    parallel_blocks(region.size(), kBlock, [&](std::size_t first, std::size_t last) {
+        // Particles of one region mostly stand together: each other one notes by which it was met last.
+        std::vector<std::int32_t> by(static_cast<std::size_t>(regions), -1);
+        std::vector<RegionPair>& pairs = met[first / kBlock];
+        for (std::size_t i = first; i < last; ++i)
+            for (std::size_t k = other.begin(i); k < other.end(i); ++k) {
+                const std::int32_t a = region[i], b = region[other.index[k]];
+                if (a > b || by[static_cast<std::size_t>(b)] == a) continue;
+                by[static_cast<std::size_t>(b)] = a;
+                pairs.push_back({a, b});
+            }
+        tidy(pairs);
+    });
+    std::vector<RegionPair> all;
+    for (const std::vector<RegionPair>& pairs : met) all.insert(all.end(), pairs.begin(), pairs.end());
+    tidy(all);
+    return all;
+}
 
 }  // namespace
 
@@ -174,29 +191,20 @@ NeighborLists find_neighbors(std::span<const Vec3> position,
                              std::span<const std::int32_t> region,
                              double support_radius) {
     const SortedParticles particles(position, normal, region, support_radius);
-    constexpr std::size_t kBlock = 256;
-    const std::size_t count = position.size();
-    std::vector<Rows> same((count + kBlock - 1) / kBlock), other(same.size());
-    std::vector<std::vector<RegionPair>> met(same.size());
-    const std::int32_t regions = region.empty() ? 0 : *std::max_element(region.begin(), region.end()) + 1;
-    parallel_blocks(count, kBlock, [&](std::size_t first, std::size_t last) {
-        Rows& mine = same[first / kBlock];
-        Rows& theirs = other[first / kBlock];
-        MetRegions touching(static_cast<std::size_t>(regions));
-        for (std::size_t i = first; i < last; ++i) {
-            particles.add_near(position[i], normal[i], region[i], mine, theirs);
-            mine.take_out(static_cast<std::uint32_t>(i));
-            for (const std::uint32_t j : theirs.row_at_hand()) touching.meet(region[i], region[j]);
+    const std::span<const std::uint32_t> order = particles.order();
+    std::vector<Rows> same((order.size() + kBlock - 1) / kBlock), other(same.size());
+    parallel_blocks(order.size(), kBlock, [&](std::size_t first, std::size_t last) {
+        Rows &mine = same[first / kBlock], &theirs = other[first / kBlock];
+        for (std::size_t s = first; s < last; ++s) {
+            particles.add_near(s, mine, theirs);
+            mine.take_out(order[s]);
             mine.close_row();
             theirs.close_row();
         }
-        met[first / kBlock] = std::move(touching).tidied();
     });
     const FilmKernel kernel{support_radius};
-    NeighborLists lists{joined(count, same, kernel), joined(count, other, kernel)};
-    for (const std::vector<RegionPair>& pairs : met)
-        lists.touching.insert(lists.touching.end(), pairs.begin(), pairs.end());
-    tidy(lists.touching);
+    NeighborLists lists{joined(same, order, kernel), joined(other, order, kernel)};
+    lists.touching = regions_of(lists.other, region);
     return lists;
 }
 
