@@ -109,7 +109,8 @@ void add_rows(const List& list,
     std::array<std::size_t, kLanes> length{};
     for (std::size_t l = 0; l < count; ++l) length[l] = list.end(first + l) - list.begin(first + l);
     const Simd ends([&](auto l) { return static_cast<double>(length[l]); });
-    for (std::size_t k = 0; k < *std::max_element(length.begin(), length.end()); ++k) {
+    const std::size_t longest = *std::max_element(length.begin(), length.end());
+    for (std::size_t k = 0; k < longest; ++k) {
         Places place;
         for (std::size_t l = 0; l < kLanes; ++l)
             place[l] = k < length[l] ? &place_of(list.begin(first + l) + k) : &kNowhere;
@@ -133,7 +134,7 @@ void fit_patches(std::span<const Vec3> position,
         for (std::size_t l = 0; l < count; ++l)
             patch[done + l] = {.origin = position[at + l], .frame = frame_of(frame_normal[at + l])};
         PatchFits fits(patch.subspan(done, count), unit);
-        std::array<std::size_t, kLanes> places{};
+        std::array<std::size_t, kLanes> places;  // the particle's own among them
         places.fill(1);
         add_rows(
             neighbors, at, count, [&](std::size_t k) -> const Vec3& { return position[neighbors.index[k]]; }, fits,
