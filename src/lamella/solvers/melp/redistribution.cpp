@@ -11,9 +11,9 @@
 namespace lamella::melp {
 namespace {
 
-constexpr double kFarthest = 0.1;  // spacings
-constexpr double kReach = 200.0;   // spacing^2: waves longer than 14 spacings go within a pass
-constexpr double kShort = 0.3;     // spacing^2
+constexpr double kFarthest = 0.3, kFarthestShort = 0.1;  // spacings
+constexpr double kReach = 200.0;                         // spacing^2: waves longer than 14 spacings go within a pass
+constexpr double kShort = 0.3;                           // spacing^2
 
 /// Density over the region's mean, minus one.
 std::vector<double> excess(const Geometry& g, const CoarseParticles& coarse, std::size_t regions) {
@@ -45,9 +45,8 @@ std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, do
     });
     const auto apply = [&](const std::vector<double>& x, std::vector<double>& y) {
         y.resize(count);
-        for_each_particle(count, [&](std::size_t i) {
-            y[i] = diagonal[i] * x[i] - reach * sum_of_products(same, pair, x, i);
-        });
+        for_each_particle(
+            count, [&](std::size_t i) { y[i] = diagonal[i] * x[i] - reach * sum_of_products(same, pair, x, i); });
     };
     std::vector<double> phi(count, 0.0);
     constexpr double kTolerance = 1e-2;
@@ -60,6 +59,7 @@ std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, do
 
 std::vector<Vec3> evening_shift(const Geometry& g, const CoarseParticles& coarse, std::size_t regions, double spacing) {
     const double reach = kReach * spacing * spacing, farthest = kFarthest * spacing;
+    const double farthest_short = kFarthestShort * spacing;
     std::vector<Vec3> shift = gradient(g, coarse.position, smoothed(g, excess(g, coarse, regions), reach));
     // Of each film on its own: one crowded spot would hold back all of a foam.
     std::vector<double> longest(regions, 0.0);
@@ -74,8 +74,8 @@ std::vector<Vec3> evening_shift(const Geometry& g, const CoarseParticles& coarse
         away -= dot(away, g.normal[i]) * g.normal[i];
         const double length = norm(away);
         const double most = longest[static_cast<std::size_t>(coarse.region[i])];
-        shift[i] =
-            (most > farthest ? farthest / most : 1.0) * shift[i] + (length > farthest ? farthest / length : 1.0) * away;
+        shift[i] = (most > farthest ? farthest / most : 1.0) * shift[i] +
+                   (length > farthest_short ? farthest_short / length : 1.0) * away;
     });
     return shift;
 }
