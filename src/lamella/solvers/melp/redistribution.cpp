@@ -11,9 +11,9 @@
 namespace lamella::melp {
 namespace {
 
-constexpr double kFarthest = 0.3, kFarthestShort = 0.1;  // spacings
-constexpr double kReach = 200.0;                         // spacing^2: waves longer than 14 spacings go within a pass
-constexpr double kShort = 0.3;                           // spacing^2
+constexpr double kFarthest = 0.1, kFarthestInFoams = 0.3;  // spacings
+constexpr double kReach = 200.0;                           // spacing^2: waves longer than 14 spacings go within a pass
+constexpr double kShort = 0.3;                             // spacing^2
 
 /// Density over the region's mean, minus one.
 std::vector<double> excess(const Geometry& g, const CoarseParticles& coarse, std::size_t regions) {
@@ -55,11 +55,20 @@ std::vector<double> smoothed(const Geometry& g, const std::vector<double>& q, do
     return phi;
 }
 
+/// How far long waves may shift the particles of each region. [m]
+std::vector<double> farthest_shifts(const Geometry& g, std::size_t regions, double spacing) {
+    std::vector<double> farthest(regions, kFarthest * spacing);
+    for (const RegionPair& pair : g.neighbors.touching)
+        for (const std::int32_t region : pair) farthest[static_cast<std::size_t>(region)] = kFarthestInFoams * spacing;
+    return farthest;
+}
+
+double shortened(double length, double most) { return length > most ? most / length : 1.0; }
+
 }  // namespace
 
 std::vector<Vec3> evening_shift(const Geometry& g, const CoarseParticles& coarse, std::size_t regions, double spacing) {
-    const double reach = kReach * spacing * spacing, farthest = kFarthest * spacing;
-    const double farthest_short = kFarthestShort * spacing;
+    const double reach = kReach * spacing * spacing;
     std::vector<Vec3> shift = gradient(g, coarse.position, smoothed(g, excess(g, coarse, regions), reach));
     // Of each film on its own: one crowded spot would hold back all of a foam.
     std::vector<double> longest(regions, 0.0);
@@ -68,14 +77,14 @@ std::vector<Vec3> evening_shift(const Geometry& g, const CoarseParticles& coarse
         double& most = longest[static_cast<std::size_t>(coarse.region[i])];
         most = std::max(most, norm(shift[i]));
     }
+    const std::vector<double> farthest = farthest_shifts(g, regions, spacing);
     const std::vector<Vec3> uneven = unevenness(g, coarse.position);
     for_each_particle(shift.size(), [&](std::size_t i) {
         Vec3 away = (-kShort * spacing * spacing) * uneven[i];
         away -= dot(away, g.normal[i]) * g.normal[i];
-        const double length = norm(away);
-        const double most = longest[static_cast<std::size_t>(coarse.region[i])];
-        shift[i] = (most > farthest ? farthest / most : 1.0) * shift[i] +
-                   (length > farthest_short ? farthest_short / length : 1.0) * away;
+        const auto region = static_cast<std::size_t>(coarse.region[i]);
+        shift[i] =
+            shortened(longest[region], farthest[region]) * shift[i] + shortened(norm(away), kFarthest * spacing) * away;
     });
     return shift;
 }

@@ -12,10 +12,10 @@ namespace lamella::melp {
 /// long waves:  (1 - s lap) phi = density / mean density - 1 in each region, shift - s grad phi, s = 200 spacing^2;
 /// short waves: - 0.3 spacing^2 sum_j a_j grad W_ij, which is what removes disorder.
 ///
-/// These are at most a tenth of the spacing, long waves three tenths: where bubbles change their neighbors the edge of
-/// one goes back by half a spacing in a step, and with a tenth particles piled up in it to four times their density
-/// [there: a tenth]. A pass in every step keeps densities even while a bubble swings; one that followed more slowly
-/// would let densities lag behind the swing, and made it grow by 1.6 % per period.
+/// Either is at most a tenth of the spacing, but long waves three tenths in films that touch others: where bubbles
+/// change their neighbors the edge of one goes back by half a spacing in a step, and with a tenth particles piled up in
+/// it to four times their density. A pass in every step keeps densities even while a bubble swings; one that followed
+/// more slowly would let densities lag behind the swing, and made it grow by 1.6 % per period.
 std::vector<Vec3> evening_shift(const Geometry& geometry,
                                 const CoarseParticles& coarse,
                                 std::size_t regions,
