@@ -336,6 +336,10 @@ TEST(Foam, IsRefusedByNameWhereItIsNotBuilt) {
     };
     EXPECT_TRUE(refused(kThree + "[[event]]\nkind = \"puncture\"\n", "puncture in scenes of several bubbles"));
     EXPECT_TRUE(refused(kThree + "[[wall]]\nnormal = [0.0, 0.0, 0.0]\n", "wall.normal"));
+    EXPECT_TRUE(refused(kThree + "[[wall]]\npoint = [0.0, 0.0, 0.0]\n", "behind [[wall]] 1"));
+    EXPECT_TRUE(refused(kThree + "[[wall]]\npoint = [0.0, 0.0, -0.1]\n[[faucet]]\nradius = 0.01\ncenter = [0.0, 0.0, "
+                                 "-0.095]\n",
+                        "bubble 4 starts 0.005 m behind [[wall]] 1"));
     EXPECT_TRUE(refused(kThree + "[[faucet]]\n", "faucet.radius"));
     EXPECT_TRUE(refused(kThree + "[[faucet]]\nradius = 0.005\n", "too coarse for bubble 4"));
 }

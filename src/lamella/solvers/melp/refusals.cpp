@@ -4,6 +4,7 @@
 
 #include "lamella/core/error.h"
 #include "lamella/film/surfactant.h"
+#include "lamella/solvers/melp/bubble_shapes.h"
 #include "lamella/solvers/melp/open_films.h"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,6 +32,37 @@ void refuse_coarse_contacts(const film::Problem& films) {
                 fmt::format("resolution.edge_length = {:.4g} m is too coarse for bubble {} among others: at most a "
                             "sixth of its radius of {:.4g} m will do",
                             films.edge_length, index(r), radius));
+    }
+}
+
+/// How far bubbles, those of faucets too, reach behind a wall, and which one does farthest; below 0: none. [m]
+std::pair<double, mesh::RegionId> deepest_behind(const film::Wall& wall, const film::Problem& films) {
+    std::pair<double, mesh::RegionId> deepest{-1.0, mesh::kOutside};
+    const auto reach = [&](mesh::RegionId bubble, const Vec3& center, double radius) {
+        deepest = std::max(deepest, {dot(wall.point - center, wall.normal) + radius, bubble});
+    };
+    const auto& regions = films.mesh.regions;
+    const IdVector<mesh::RegionId, std::optional<mesh::Ball>> loose = loose_balls(films.mesh);
+    for (const film::Release& release : films.releases) reach(release.region, release.center, release.radius);
+    for (const mesh::RegionId r : regions.ids())
+        if (loose[r]) reach(r, loose[r]->center, loose[r]->radius);
+    for (const mesh::Face& face : films.mesh.faces)
+        for (const mesh::RegionId r : {face.back, face.front})
+            if (regions[r].kind == mesh::RegionKind::kClosed && !loose[r])
+                for (const mesh::VertexId v : face.vertices) reach(r, films.mesh.position[v], 0.0);
+    return deepest;
+}
+
+/// A wall throws out what starts behind it: bubbles may touch it at most.
+void refuse_bubbles_behind_walls(const film::Problem& films) {
+    constexpr double kTouching = 1e-3;  // of the bubble's size
+    for (std::size_t k = 0; k < films.walls.size(); ++k) {
+        const auto [depth, bubble] = deepest_behind(films.walls[k], films);
+        if (depth > 0.0 && depth > kTouching * std::cbrt(films.mesh.regions[bubble].target_volume))
+            throw InputError(
+                fmt::format("bubble {} starts {:.3g} m behind [[wall]] {}: bubbles and faucets belong wholly on the "
+                            "side that wall.normal points to",
+                            index(bubble), depth, k + 1));
     }
 }
 
@@ -137,6 +170,7 @@ void refuse_unknown_films(const film::Problem& films, const Options& options) {
                 "melp.fine_ratio = 0: films burst only with fine particles, whose liquid the edge gathers");
     }
     refuse_coarse_contacts(films);
+    refuse_bubbles_behind_walls(films);
 }
 
 }  // namespace lamella::melp
