@@ -303,6 +303,15 @@ TEST(Foam, GivesTheSameBitsOnAnyNumberOfThreadsAndAfterAResume) {
     }
 }
 
+TEST(Foam, TellsHowManyBubblesWaitForTheirPlace) {
+    auto solver = solver_of(kPour);
+    solver->start({});
+    EXPECT_EQ(scalar(*solver, "waiting_bubbles"), 0.0);
+    advance_to(*solver, 0.005);  // the first has sunk by a quarter of its radius
+    EXPECT_EQ(scalar(*solver, "bubbles"), 1.0);
+    EXPECT_EQ(scalar(*solver, "waiting_bubbles"), 2.0);
+}
+
 /// The mesh of [foam] has cells of up to twice the volumes: bubbles start as balls that just do not touch.
 TEST(Foam, StartsFromTheFoamOfAScene) {
     auto solver = solver_of(

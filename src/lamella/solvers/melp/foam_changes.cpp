@@ -203,6 +203,14 @@ void MelpSolver::release_bubbles() {
     }
 }
 
+/// Bubbles of faucets whose time has come and whose place is not free.
+std::ptrdiff_t MelpSolver::waiting_bubbles() const {
+    std::ptrdiff_t waiting = 0;
+    for (std::size_t k = 0; k < released_.size(); ++k)
+        if (released_[k] == 0 && input_.films->releases[k].time <= time_) ++waiting;
+    return waiting;
+}
+
 /// When the next bubble enters that has not come yet [s].
 double MelpSolver::next_release() const {
     for (std::size_t k = 0; k < released_.size(); ++k)

@@ -12,6 +12,7 @@
 #include "lamella/solvers/melp/surfactant.h"
 #include "lamella/solvers/melp/transfer.h"
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -94,6 +95,7 @@ private:
     void burst_on_walls();
     bool is_free(const film::Release& release) const;
     void release_bubbles();
+    std::ptrdiff_t waiting_bubbles() const;
     double next_release() const;
     void follow_contacts(double time);
     void load_contacts(sim::StateReader& in);

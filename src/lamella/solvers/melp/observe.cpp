@@ -204,6 +204,7 @@ std::vector<sim::Scalar> MelpSolver::scalars() const {
         {"bubbles", "-",
          static_cast<double>(std::count_if(gas_.begin(), gas_.end(), [](const Gas& g) { return g.closed; })),
          "with gas of their own"},
+        {"waiting_bubbles", "-", static_cast<double>(waiting_bubbles()), "of faucets whose place is not free yet"},
         {"coarse_particles", "-", static_cast<double>(coarse_.size()), "that carry the shape"},
         {"fine_particles", "-", static_cast<double>(fine_.size()), "that are the liquid"},
     };
