@@ -11,6 +11,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 LINK = re.compile(r"!?\[[^\]]*\]\(\s*<?([^)\s>]+)>?[^)]*\)")
+IMAGE = re.compile(r'<img\s[^>]*src="([^"]+)"')
 CITATION = re.compile(r"\[([A-Z][A-Za-z]+\d{2})(?:,[^\]]*)?\]")
 SKIPPED = {"build", "runs", "node_modules", ".git", "data", "corpus"}  # the last two: malformed on purpose
 
@@ -35,7 +36,7 @@ def files(tree, suffixes):
 def link_faults(tree):
     for page in files(tree, {".md"}):
         for number, line in enumerate(without_code(page.read_text(encoding="utf-8")).splitlines(), 1):
-            for target in LINK.findall(line):
+            for target in LINK.findall(line) + IMAGE.findall(line):
                 if re.match(r"[a-z]+:", target):  # http:, mailto:
                     continue
                 name, _, anchor = target.partition("#")
@@ -70,9 +71,9 @@ def self_test():
             "```\n[code](y.md)\n```\n", encoding="utf-8")
         (tree / "b.md").write_text(
             "[gone](docs/gone.md)\n![picture](p.png)\n[heading](docs/a.md#nothing)\n[Unknown01, eq. 3]\n"
-            "[fine](docs/a.md#a-title-here)\n", encoding="utf-8")
+            "[fine](docs/a.md#a-title-here)\n<img width=\"9\" src=\"q.png\">\n", encoding="utf-8")
         found = faults_of(tree)
-    expected = ["b.md:1:", "b.md:2:", "b.md:3:", "b.md:4:"]
+    expected = ["b.md:1:", "b.md:2:", "b.md:3:", "b.md:6:", "b.md:4:"]
     if [fault.split(" ")[0] for fault in found] != expected:
         return [f"expected faults at {expected}", *found]
     return []
