@@ -30,8 +30,8 @@ TEST(Crowd, StaysWholeInALowBoxWithLongSteps) {
         "seed = 3\n[material]\nsurface_tension = 0.025\nthickness = 5e-7\ngravity = [0.0, 0.0, -9.81]\n"
         "[resolution]\nedge_length = 0.0015\n[[wall]]\nnormal = [0, 0, 1]\n";
     for (const double side : {1.0, -1.0}) scene += wall(side, 0.0) + wall(0.0, side);
-    scene += faucet(0.0, 0.0, 0) + faucet(-0.0144, -0.0144, 1) + faucet(0.0144, -0.0144, 2) +
-             faucet(0.0144, 0.0144, 3) + faucet(-0.0144, 0.0144, 4);
+    scene += faucet(0.0, 0.0, 0) + faucet(-0.0125, -0.0125, 1) + faucet(0.0125, -0.0125, 2) +
+             faucet(0.0125, 0.0125, 3) + faucet(-0.0125, 0.0125, 4);
     scene +=
         "[melp]\nfine_ratio = 0\njoining_delay = 0.1\ndamping = 12.0\nshape_damping = 20000.0\nsteps_per_period = 0\n"
         "largest_step = 1e-3\ncfl = 1.0\n";
