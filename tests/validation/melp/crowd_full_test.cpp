@@ -47,7 +47,7 @@ TEST(Crowd, StaysWholeInALowBoxWithLongSteps) {
     std::printf("crowd of %.0f bubbles, %zu coarse: widest spread %.2f, at the end %.2f\n", scalar(*solver, "bubbles"),
                 solver->coarse().size(), widest, scalar(*solver, "density_spread"));
     EXPECT_GT(scalar(*solver, "bubbles"), 30.0);
-    EXPECT_LT(widest, 1.0);
+    EXPECT_LT(widest, 0.3);
     EXPECT_LT(scalar(*solver, "density_spread"), 0.3);
 }
 

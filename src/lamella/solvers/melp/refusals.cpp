@@ -36,13 +36,14 @@ void refuse_coarse_contacts(const film::Problem& films) {
 }
 
 /// How far bubbles, those of faucets too, reach behind a wall, and which one does farthest; below 0: none. [m]
-std::pair<double, mesh::RegionId> deepest_behind(const film::Wall& wall, const film::Problem& films) {
+std::pair<double, mesh::RegionId> deepest_behind(const film::Wall& wall,
+                                                 const film::Problem& films,
+                                                 const IdVector<mesh::RegionId, std::optional<mesh::Ball>>& loose) {
     std::pair<double, mesh::RegionId> deepest{-1.0, mesh::kOutside};
     const auto reach = [&](mesh::RegionId bubble, const Vec3& center, double radius) {
         deepest = std::max(deepest, {dot(wall.point - center, wall.normal) + radius, bubble});
     };
     const auto& regions = films.mesh.regions;
-    const IdVector<mesh::RegionId, std::optional<mesh::Ball>> loose = loose_balls(films.mesh);
     for (const film::Release& release : films.releases) reach(release.region, release.center, release.radius);
     for (const mesh::RegionId r : regions.ids())
         if (loose[r]) reach(r, loose[r]->center, loose[r]->radius);
@@ -56,8 +57,9 @@ std::pair<double, mesh::RegionId> deepest_behind(const film::Wall& wall, const f
 /// A wall throws out what starts behind it: bubbles may touch it at most.
 void refuse_bubbles_behind_walls(const film::Problem& films) {
     constexpr double kTouching = 1e-3;  // of the bubble's size
+    const IdVector<mesh::RegionId, std::optional<mesh::Ball>> loose = loose_balls(films.mesh);
     for (std::size_t k = 0; k < films.walls.size(); ++k) {
-        const auto [depth, bubble] = deepest_behind(films.walls[k], films);
+        const auto [depth, bubble] = deepest_behind(films.walls[k], films, loose);
         if (depth > 0.0 && depth > kTouching * std::cbrt(films.mesh.regions[bubble].target_volume))
             throw InputError(
                 fmt::format("bubble {} starts {:.3g} m behind [[wall]] {}: bubbles and faucets belong wholly on the "
